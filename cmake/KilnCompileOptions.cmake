@@ -1,0 +1,21 @@
+# kiln_options: language level, warnings, optimisation and include root of everything in this tree.
+add_library(kiln_options INTERFACE)
+target_compile_features(kiln_options INTERFACE cxx_std_17)
+target_include_directories(kiln_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+target_compile_options(kiln_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wno-unknown-pragmas
+  # `#pragma omp simd` marks sums that may be reordered for vector units; nothing else of OpenMP is used.
+  -fopenmp-simd
+  # Kiln reads neither errno after a math function nor floating-point traps; NaN and infinity keep their meaning.
+  -fno-math-errno -fno-trapping-math)
+if(KILN_NATIVE)
+  target_compile_options(kiln_options INTERFACE -march=native)
+endif()
+if(KILN_WARNINGS_AS_ERRORS)
+  target_compile_options(kiln_options INTERFACE -Werror)
+endif()
+if(KILN_SANITIZE)
+  target_compile_options(kiln_options INTERFACE -fsanitize=${KILN_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(kiln_options INTERFACE -fsanitize=${KILN_SANITIZE})
+endif()
+target_link_libraries(kiln_options INTERFACE kiln_dependencies)

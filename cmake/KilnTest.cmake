@@ -1,0 +1,28 @@
+# kiln_test(NAME suite SOURCES a.cpp … [RANKS 1 2 …])
+# One GoogleTest executable, registered once for each rank count; every count runs all its tests.
+find_package(GTest REQUIRED)
+set(KILN_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
+    OPENBLAS_NUM_THREADS=1)
+
+function(kiln_test)
+  cmake_parse_arguments(TEST "" "NAME;TIMEOUT" "SOURCES;RANKS" ${ARGN})
+  if(NOT TEST_RANKS)
+    set(TEST_RANKS 1)
+  endif()
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 300)
+  endif()
+  add_executable(test_${TEST_NAME} ${TEST_SOURCES} ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
+  target_link_libraries(test_${TEST_NAME} PRIVATE kiln_library GTest::gtest)
+  foreach(ranks IN LISTS TEST_RANKS)
+    if(ranks EQUAL 1)
+      add_test(NAME ${TEST_NAME} COMMAND test_${TEST_NAME})
+      set(test ${TEST_NAME})
+    else()
+      set(test ${TEST_NAME}.${ranks}_ranks)
+      add_test(NAME ${test} COMMAND ${MPIEXEC_EXECUTABLE} -n ${ranks} $<TARGET_FILE:test_${TEST_NAME}>)
+    endif()
+    set_tests_properties(${test} PROPERTIES ENVIRONMENT "${KILN_MPI_ENVIRONMENT}" TIMEOUT ${TEST_TIMEOUT} PROCESSORS ${ranks})
+  endforeach()
+endfunction()

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Kokkos_Core.hpp>
+#include <Teuchos_Comm.hpp>
+#include <Teuchos_RCP.hpp>
+#include <Tpetra_CrsMatrix_decl.hpp>
+#include <Tpetra_Import_decl.hpp>
+#include <Tpetra_Map_decl.hpp>
+#include <Tpetra_MultiVector_decl.hpp>
+#include <Tpetra_Operator.hpp>
+#include <Tpetra_Vector_decl.hpp>
+
+/// The one place that names template arguments of Tpetra and Kokkos. Everything stays on the default
+/// node, so a Trilinos built for OpenMP or CUDA needs no change elsewhere.
+namespace kiln {
+
+using Communicator = Teuchos::Comm<int>;
+
+using Map = Tpetra::Map<>;
+using LocalIndex = Map::local_ordinal_type;
+using GlobalIndex = Map::global_ordinal_type;
+using Vector = Tpetra::Vector<double>;
+using MultiVector = Tpetra::MultiVector<double>;
+using CrsMatrix = Tpetra::CrsMatrix<double>;
+using Operator = Tpetra::Operator<double>;
+using Import = Tpetra::Import<>;
+
+using Device = Map::device_type;
+using ExecutionSpace = Device::execution_space;
+using RangePolicy = Kokkos::RangePolicy<ExecutionSpace, LocalIndex>;
+
+/// Local, contiguous arrays on the default device; matrices are column-major, as BLAS and Tpetra hold them.
+using VectorView = Kokkos::View<double*, Kokkos::LayoutLeft, Device>;
+using ConstVectorView = Kokkos::View<const double*, Kokkos::LayoutLeft, Device>;
+using MatrixView = Kokkos::View<double**, Kokkos::LayoutLeft, Device>;
+using ConstMatrixView = Kokkos::View<const double**, Kokkos::LayoutLeft, Device>;
+/// One row a particle: x, y, z in metres.
+using PositionView = Kokkos::View<double* [3], Kokkos::LayoutRight, Device>;
+using ConstPositionView = Kokkos::View<const double* [3], Kokkos::LayoutRight, Device>;
+
+}  // namespace kiln

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/base/LinearAlgebra.hpp"
+
+/// A thin layer over HDF5's C interface: handles that close themselves, errors that name file and object, and the two
+/// kinds of data Kiln writes: replicated (small, the same on every rank) and distributed by a Tpetra map.
+namespace kiln::hdf5 {
+
+template <class T>
+struct Array {
+  std::vector<std::size_t> shape;
+  std::vector<T> values;  ///< row-major
+};
+
+/// A group of an open file. All calls are collective over the file's communicator. Reading throws FileError that names
+/// the object for what is missing or has another type or shape.
+class Group {
+ public:
+  bool has(const std::string& name) const;
+  Group group(const std::string& name) const;
+  Group create_group(const std::string& name);
+  std::vector<std::string> names() const;
+  const std::string& file() const;
+  const std::string& path() const;
+
+  void attribute(const std::string& name, const std::string& value);
+  void attribute(const std::string& name, double value);
+  void attribute(const std::string& name, long long value);
+  /// Attribute of a dataset of this group, e.g. its unit.
+  void attribute_of(const std::string& dataset, const std::string& name, const std::string& value);
+  std::string text(const std::string& attribute) const;
+  double real(const std::string& attribute) const;
+  long long integer(const std::string& attribute) const;
+
+  /// Replicated data; rank 0's values are written.
+  void write(const std::string& name, const Array<double>& array);
+  void write(const std::string& name, const Array<long long>& array);
+  void write(const std::string& name, const std::vector<double>& values);
+  void write(const std::string& name, const std::vector<long long>& values);
+  Array<double> reals(const std::string& name) const;
+  Array<long long> integers(const std::string& name) const;
+  /// Also checks the shape; an entry of 0 matches any length.
+  Array<double> reals(const std::string& name, const std::vector<std::size_t>& shape) const;
+  Array<long long> integers(const std::string& name, const std::vector<std::size_t>& shape) const;
+  std::vector<std::size_t> shape(const std::string& name) const;
+
+  /// Distributed data, one dataset row for each particle of `map`, in ascending order of global ids whatever the
+  /// number of ranks. Each particle lies on one rank. values: local particles × columns.
+  void write_rows(const std::string& name, const Map& map, ConstMatrixView values);
+  /// Reads the rows of `map`'s particles; the dataset's row i belongs to global id i. Particles may lie on many ranks.
+  MatrixView read_rows(const std::string& name, const Map& map) const;
+
+ protected:
+  struct Handle;
+  explicit Group(std::shared_ptr<Handle> handle) : handle_(std::move(handle)) {}
+  std::shared_ptr<Handle> handle_;
+};
+
+/// An HDF5 file. Closes when the last of it and its groups goes.
+class File : public Group {
+ public:
+  /// A new file, written by all ranks; replaces an existing one. Throws FileError.
+  static File create(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
+  /// Throws FileError for a missing file and for one that is not HDF5.
+  static File read(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
+  static File modify(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
+  void flush();
+
+ private:
+  using Group::Group;
+};
+
+}  // namespace kiln::hdf5

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/base/Error.hpp"
+#include "framework/base/LinearAlgebra.hpp"
+#include "framework/registry/Specification.hpp"
+
+namespace kiln {
+
+/// A place in an input file, 1-based; line 0: not in the file (an override or a default).
+struct Location {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// A YAML file checked against a specification: every key known, every value of its type and in its range, defaults
+/// filled in. Sublists carry their dotted path as their name ("model.heat_source"), so that a component can say where a
+/// mistake lies.
+class Input {
+ public:
+  /// Reads the file once, on rank 0. `overrides` are "path.to.key=value" texts that go through the same checks.
+  /// Throws InputError with all mistakes of the file at once; their text already has file:line:column in front.
+  static Input read(const std::string& file, const std::vector<std::string>& overrides,
+                    const Specification& specification, const Communicator& communicator);
+
+  const Teuchos::ParameterList& list() const { return list_; }
+  const std::string& file() const { return file_; }
+  /// Where the entry stands, or its nearest enclosing block.
+  Location location(const std::string& path) const;
+  /// Puts "file:line:column: " before each problem: for mistakes that components find while they are built.
+  InputError located(const InputError& error) const;
+  /// The checked input with defaults, as YAML in SI units: what `kiln check` prints and provenance records.
+  std::string merged() const;
+
+ private:
+  std::string file_;
+  Teuchos::ParameterList list_;
+  std::map<std::string, Location> locations_;
+};
+
+/// The checked block as YAML text, keys in their order; used for hashes and comparisons.
+std::string to_yaml(const Teuchos::ParameterList& list);
+
+}  // namespace kiln

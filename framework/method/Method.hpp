@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "framework/base/LinearAlgebra.hpp"
+#include "framework/model/Model.hpp"
+#include "framework/time/StepResidual.hpp"
+
+namespace Teuchos {
+class ParameterList;
+}
+
+namespace kiln {
+
+namespace hdf5 {
+class Group;
+}
+
+/// How the unknowns of a model are represented and solved for: the full-order state itself, or generalised
+/// coordinates of a trial space. `method: {type: …}` in the input picks one; time schemes, the driver and observers
+/// know this interface only.
+///
+/// The unknown x is the local part of a vector over coordinates(): this rank's rows of u (full order), or all M
+/// coordinates û, the same on every rank (reduced). `evaluate` turns x into the state and rate at this rank's rows,
+/// where time schemes keep their history (StepResidual).
+class Method {
+ public:
+  struct Context {
+    const Teuchos::ParameterList& input;  ///< the whole checked input
+    Teuchos::RCP<const Communicator> communicator;
+  };
+  static constexpr const char* category = "method";
+
+  virtual ~Method() = default;
+
+  /// Map of the unknown x. Reduced methods return a locally replicated map.
+  virtual Teuchos::RCP<const Map> coordinates() const = 0;
+  /// Length of this rank's part of a row-space vector: rows × components.
+  virtual LocalIndex row_size() const = 0;
+  /// x at t = 0.
+  virtual void initial(VectorView x) const = 0;
+
+  /// u and f(u, t) at this rank's rows for the unknown x.
+  virtual void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) = 0;
+  /// dx/dt, for explicit Runge–Kutta stages. Returns the number of evaluations of f.
+  virtual int rate(ConstVectorView x, double time, VectorView dxdt) = 0;
+  /// Solves r(x) = 0, exactly or in the method's own sense, from the guess in x. On return x is the solution and
+  /// u, f hold state and rate at this rank's rows there. Throws DivergenceError without step number; the driver adds it.
+  virtual SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) = 0;
+
+  /// Particles whose state can be told on this rank, each on exactly one rank. Full order: all; hyper-reduced: the
+  /// sample mesh and the queried particles.
+  virtual Teuchos::RCP<const Map> particles() const = 0;
+  /// Positions in metres of particles(), in its order.
+  virtual ConstPositionView positions() const = 0;
+  /// Components of a particle's state.
+  virtual std::vector<Field> fields() const = 0;
+  /// State of particles() for the unknown x. u: particles × components.
+  virtual void state(ConstVectorView x, VectorView u) const = 0;
+
+  virtual Parameters& parameters() = 0;
+
+  /// What a bitwise restart needs besides x and the scheme's history: the point a frozen Jacobian was taken at.
+  virtual void save(hdf5::Group& group) const = 0;
+  virtual void restore(const hdf5::Group& group) = 0;
+
+  /// The method's own lines of the run report, e.g. basis rank and sampled particles.
+  virtual void report(nlohmann::json& section) const = 0;
+};
+
+}  // namespace kiln

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+
+#include "framework/method/Method.hpp"
+
+namespace kiln {
+
+class RunReport;
+
+/// Where a run stands when observers are called.
+struct Moment {
+  int step;           ///< 0: initial state
+  int last_step;      ///< number of the run's last step
+  double time;        ///< in s
+  ConstVectorView x;  ///< the method's unknown
+  SolveReport solve;  ///< of this step; empty at step 0
+};
+
+/// Looks at a run after its initial state and after every step: writes fields, probes, checkpoints, collects snapshots.
+/// Calls are collective. Registered observers are blocks of `output:` in the input, by their name.
+class Observer {
+ public:
+  struct Context {
+    Method& method;
+    std::filesystem::path folder;  ///< of this run's outputs, existing and writable
+    Teuchos::RCP<const Communicator> communicator;
+    int first_step;  ///< 0, or the step of the checkpoint a restarted run continues from
+    int last_step;
+    double step;     ///< Δt in s
+  };
+  static constexpr const char* category = "observer";
+
+  virtual ~Observer() = default;
+  virtual void observe(const Moment& moment) = 0;
+  /// After the last step; adds what belongs into the run's report.
+  virtual void finish(RunReport& report) = 0;
+};
+
+}  // namespace kiln
