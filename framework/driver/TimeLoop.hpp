@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/observers/Observer.hpp"
+#include "framework/time/TimeScheme.hpp"
+
+namespace kiln {
+
+/// Steps first_step + 1 … last_step of uniform length; step n ends at n · step seconds.
+struct TimeSpan {
+  double step;
+  int first_step;
+  int last_step;
+
+  /// From the block `time` of the input: `step` and `end`. Throws InputError if `end` is no multiple of `step` to 1e-6.
+  static TimeSpan of(const Teuchos::ParameterList& input);
+};
+
+/// Sums of a run's solve reports.
+struct LoopTotals {
+  int steps = 0;
+  long long residuals = 0;
+  long long iterations = 0;
+  int capped_steps = 0;  ///< steps whose iteration cap came before convergence
+};
+
+/// Runs a method through its time span. `scheme` is started or restored already and x is the unknown at first_step;
+/// observers see the first moment only when first_step is 0. Adds the step to a DivergenceError.
+LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+                         const std::vector<Observer*>& observers);
+
+}  // namespace kiln

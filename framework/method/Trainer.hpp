@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <filesystem>
+
+#include "framework/base/LinearAlgebra.hpp"
+#include "framework/report/RunReport.hpp"
+
+namespace kiln {
+
+/// The offline stage behind `kiln train`: runs the full-order model, learns a reduction from it and writes one
+/// self-contained reduction file. The block `reduction:` of the input picks and sets one.
+class Trainer {
+ public:
+  struct Context {
+    const Teuchos::ParameterList& input;  ///< the whole checked input
+    Teuchos::RCP<const Communicator> communicator;
+  };
+  static constexpr const char* category = "trainer";
+
+  virtual ~Trainer() = default;
+  /// Writes `file` at once at the end: either whole or not at all. Collective.
+  virtual void train(const std::filesystem::path& file, RunReport& report) = 0;
+};
+
+}  // namespace kiln
