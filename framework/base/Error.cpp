@@ -31,8 +31,8 @@ InputError::InputError(std::vector<Problem> problems)
     : std::runtime_error(text(problems)), problems_(std::move(problems)) {}
 
 InputError::InputError(std::string path, std::string found, std::string expected, std::string suggestion)
-    : InputError(std::vector<Problem>{
-          {std::move(path), std::move(found), std::move(expected), std::move(suggestion)}}) {}
+    : InputError(
+          std::vector<Problem>{{std::move(path), std::move(found), std::move(expected), std::move(suggestion)}}) {}
 
 FileError::FileError(std::string file, std::string place, std::string found, std::string expected)
     : std::runtime_error(file_text(file, place, found, expected)) {}

@@ -48,7 +48,8 @@ class Method {
   /// dx/dt, for explicit Runge–Kutta stages. Returns the number of evaluations of f.
   virtual int rate(ConstVectorView x, double time, VectorView dxdt) = 0;
   /// Solves r(x) = 0, exactly or in the method's own sense, from the guess in x. On return x is the solution and
-  /// u, f hold state and rate at this rank's rows there. Throws DivergenceError without step number; the driver adds it.
+  /// u, f hold state and rate at this rank's rows there. Throws DivergenceError without step number; the driver adds
+  /// it.
   virtual SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) = 0;
 
   /// Particles whose state can be told on this rank, each on exactly one rank. Full order: all; hyper-reduced: the

@@ -27,7 +27,7 @@ class Observer {
     Teuchos::RCP<const Communicator> communicator;
     int first_step;  ///< 0, or the step of the checkpoint a restarted run continues from
     int last_step;
-    double step;     ///< Δt in s
+    double step;  ///< Δt in s
   };
   static constexpr const char* category = "observer";
 

@@ -20,11 +20,11 @@ struct Registration {
   std::string name;      ///< as written in the input, e.g. "cubic spline"
   std::string summary;   ///< one line
   Specification (*specification)();
-  std::string file;      ///< where it was registered
+  std::string file;  ///< where it was registered
   int line;
-  std::string library;   ///< the plugin it came with; empty: built in
-  std::any factory;      ///< Registry<Base>::Factory
-  std::any restore;      ///< Registry<Base>::Restore; empty when the component cannot be restored from a file
+  std::string library;  ///< the plugin it came with; empty: built in
+  std::any factory;     ///< Registry<Base>::Factory
+  std::any restore;     ///< Registry<Base>::Restore; empty when the component cannot be restored from a file
 };
 
 /// All registered components. Lives in the Kiln library, so that plugins see the same one.
@@ -57,9 +57,8 @@ class Registry {
 
   template <class Component>
   static bool add(std::string name, std::string summary, const char* file, int line) {
-    Registration registration{Base::category, std::move(name), std::move(summary), &Component::specification,
-                              file,           line,            {},                 {},
-                              {}};
+    Registration registration{
+        Base::category, std::move(name), std::move(summary), &Component::specification, file, line, {}, {}, {}};
     registration.factory = Factory([](const Teuchos::ParameterList& list, const Context& context) {
       return std::unique_ptr<Base>(std::make_unique<Component>(list, context));
     });
@@ -100,7 +99,8 @@ struct NoContext {};
 #define KILN_CONCATENATE_INNER(a, b) a##b
 #define KILN_CONCATENATE(a, b) KILN_CONCATENATE_INNER(a, b)
 
-/// Registers a class under the name the input uses; stands once, in the class's .cpp file, inside namespace kiln or not.
+/// Registers a class under the name the input uses; stands once, in the class's .cpp file, inside namespace kiln or
+/// not.
 #define KILN_REGISTER(Base, Component, name, summary)                          \
   [[maybe_unused]] static const bool KILN_CONCATENATE(registered_, __LINE__) = \
       ::kiln::Registry<Base>::add<Component>(name, summary, __FILE__, __LINE__)

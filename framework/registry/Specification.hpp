@@ -39,15 +39,15 @@ struct Entry {
 
   std::string key;
   Kind kind = Kind::text;
-  std::string help;                   ///< one line
-  std::string unit = "1";             ///< SI unit of reals
-  Value fallback;                     ///< default; monostate: none
-  bool required = true;               ///< false with a fallback, or when it may be left out
-  std::optional<double> lower, upper; ///< range of numbers
+  std::string help;                    ///< one line
+  std::string unit = "1";              ///< SI unit of reals
+  Value fallback;                      ///< default; monostate: none
+  bool required = true;                ///< false with a fallback, or when it may be left out
+  std::optional<double> lower, upper;  ///< range of numbers
   bool open_lower = false, open_upper = false;
   std::vector<std::string> choices;
   int length = 0;
-  std::string category;               ///< of components and blocks
+  std::string category;  ///< of components and blocks
   std::shared_ptr<const Specification> nested;
 };
 

@@ -14,11 +14,11 @@ enum class JacobianForm { diagonal, sparse, matrix_free, finite_difference };
 
 /// The block `time.newton`: how a step's nonlinear system is solved, full order or reduced.
 struct NewtonSettings {
-  double tolerance;     ///< of the residual norm, relative to the step's first one
-  int iterations;       ///< cap on updates a step
+  double tolerance;  ///< of the residual norm, relative to the step's first one
+  int iterations;    ///< cap on updates a step
   JacobianForm jacobian;
-  int refresh;          ///< steps between two evaluations of the Jacobian; 1: every step
-  bool line_search;     ///< halve an update until the residual norm falls
+  int refresh;       ///< steps between two evaluations of the Jacobian; 1: every step
+  bool line_search;  ///< halve an update until the residual norm falls
 
   explicit NewtonSettings(const Teuchos::ParameterList& list);
   /// Also holds `linear_solver`, a component of category "linear solver", read by the full-order method.

@@ -1,0 +1,49 @@
+#include "framework/model/Parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/base/Error.hpp"
+#include "framework/registry/Nearest.hpp"
+
+namespace kiln {
+
+void Parameters::add(std::string name, std::string unit, double* value) {
+  for (const Parameter& known : parameters_) {
+    if (known.name == name) throw std::logic_error(fmt::format("model parameter '{}' is listed twice", name));
+  }
+  parameters_.push_back({std::move(name), std::move(unit), value});
+}
+
+void Parameters::add(std::string_view prefix, const Parameters& component) {
+  for (const Parameter& parameter : component.parameters_) {
+    add(fmt::format("{}.{}", prefix, parameter.name), parameter.unit, parameter.value);
+  }
+}
+
+const Parameter& Parameters::find(std::string_view name) const {
+  std::vector<std::string> known;
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.name == name) return parameter;
+    known.push_back(parameter.name);
+  }
+  throw InputError(
+      "", fmt::format("the model has no parameter '{}'", name),
+      known.empty() ? "no parameter at all: the model lists none" : fmt::format("one of: {}", fmt::join(known, ", ")),
+      nearest(std::string(name), known));
+}
+
+double Parameters::get(std::string_view name) const { return *find(name).value; }
+
+void Parameters::set(std::string_view name, double value) {
+  const Parameter& parameter = find(name);
+  if (!std::isfinite(value)) {
+    throw InputError("", fmt::format("parameter '{}' is set to {}", name, value),
+                     fmt::format("a finite number in {}", parameter.unit));
+  }
+  *parameter.value = value;
+}
+
+}  // namespace kiln
