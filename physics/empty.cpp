@@ -1,0 +1,1 @@
+// Keeps the object library non-empty until the room's first source is merged.
