@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "framework/observers/Observer.hpp"
+#include "framework/time/TimeScheme.hpp"
+
+namespace kiln {
+
+/// Writes the state of a run every so many steps into one file, which is replaced in one stroke: whenever a run dies, the
+/// last complete checkpoint is there. A run that restarts from it on the same number of ranks goes on bit by bit as if it
+/// had never stopped.
+class Checkpoint : public Observer {
+ public:
+  /// `identity` is the text of what must agree between the runs: model, time and method. every: steps; 0: never.
+  Checkpoint(const Context& context, TimeScheme& scheme, int every, std::string identity);
+
+  void observe(const Moment& moment) override;
+  void finish(RunReport& report) override;
+
+  static std::filesystem::path file(const std::filesystem::path& folder) { return folder / "checkpoint.h5"; }
+
+  /// Takes x, the scheme's history and the method's solver state from the checkpoint in `context.folder`; returns its
+  /// step. Throws FileError for a missing or damaged file and for one of another run, naming the first line of
+  /// `identity` that differs.
+  static int restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
+                     TimeScheme& scheme, VectorView x, const Teuchos::RCP<const Communicator>& communicator);
+
+ private:
+  Method& method_;
+  TimeScheme& scheme_;
+  Teuchos::RCP<const Communicator> communicator_;
+  std::filesystem::path folder_;
+  int every_;
+  std::string identity_;
+  int written_ = 0;
+};
+
+}  // namespace kiln

@@ -1,0 +1,146 @@
+#include "framework/driver/CommandLine.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <functional>
+
+#include "framework/driver/ExitStatus.hpp"
+#include "framework/driver/Failure.hpp"
+#include "framework/driver/Run.hpp"
+#include "framework/driver/RunSpecification.hpp"
+#include "framework/files/Compare.hpp"
+#include "framework/registry/Describe.hpp"
+#include "framework/report/Provenance.hpp"
+#include "framework/report/ReportText.hpp"
+
+namespace kiln {
+namespace {
+
+void print(const Communicator& communicator, const std::string& text) {
+  if (communicator.getRank() == 0) {
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+  }
+}
+
+void add_input_options(CLI::App* command, CommandOptions& options) {
+  command->add_option("FILE", options.file, "input file (YAML)")->required();
+  command->add_option("--set", options.overrides, "change one entry of the input, e.g. --set method.type=gnat")
+      ->type_name("PATH=VALUE");
+}
+
+/// `kiln describe input` and `kiln template input` mean the whole file.
+constexpr const char* whole_input = "input";
+
+}  // namespace
+
+int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& communicator) {
+  CLI::App app("Kiln: heat deposition by smoothed particle hydrodynamics, full order or reduced, from one YAML file.",
+               "kiln");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version_line());
+  app.footer("Exit status: 0 done, 1 a comparison differs or an unforeseen error, 2 bad input or data file, 3 the solve "
+             "diverged.\nRun the computing commands on R ranks with mpirun -n R kiln …");
+
+  CommandOptions options;
+  std::string name, left, right, folder;
+  double tolerance = 1e-10;
+  double floor = 0.0;
+  std::function<int()> command;
+
+  CLI::App* run_app = app.add_subcommand("run", "Run an input: full order or reduced, as its `method` says");
+  add_input_options(run_app, options);
+  run_app->add_flag("--restart", options.restart, "continue from the last checkpoint in the run's folder");
+  run_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
+  run_app->callback([&] {
+    command = [&] {
+      run(options, communicator);
+      return exit_success;
+    };
+  });
+
+  CLI::App* train_app = app.add_subcommand("train", "Learn the reduction that an input's `reduction` block describes");
+  add_input_options(train_app, options);
+  train_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
+  train_app->callback([&] {
+    command = [&] {
+      train(options, communicator);
+      return exit_success;
+    };
+  });
+
+  CLI::App* check_app = app.add_subcommand("check", "Check an input without running it; prints it with all defaults");
+  add_input_options(check_app, options);
+  check_app->callback([&] {
+    command = [&] {
+      check(options, communicator);
+      return exit_success;
+    };
+  });
+
+  app.add_subcommand("list", "List all components: models, methods, schemes, kernels, …")->callback([&] {
+    command = [&] {
+      print(*communicator, list_components());
+      return exit_success;
+    };
+  });
+
+  CLI::App* describe_app = app.add_subcommand("describe", "Explain a component and its keys");
+  describe_app->add_option("NAME", name, "a component or a category of `kiln list`, or 'input' for the whole file")
+      ->required();
+  describe_app->callback([&] {
+    command = [&] {
+      print(*communicator, name == whole_input ? describe("Keys of an input file", run_specification()) : describe(name));
+      return exit_success;
+    };
+  });
+
+  CLI::App* template_app = app.add_subcommand("template", "Print a commented YAML block to start from");
+  template_app->add_option("NAME", name, "a component of `kiln list`, or 'input' for the whole file")->required();
+  template_app->callback([&] {
+    command = [&] {
+      print(*communicator, name == whole_input ? template_of("Input file", run_specification()) : template_of(name));
+      return exit_success;
+    };
+  });
+
+  CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
+  compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required();
+  compare_app->add_option("B", right, "the same kind; A's errors are relative to it")->required();
+  compare_app->add_option("--tolerance", tolerance, "largest relative difference", true)->check(CLI::NonNegativeNumber);
+  compare_app->add_option("--floor", floor, "values below it count as this large", true)->check(CLI::NonNegativeNumber);
+  compare_app->callback([&] {
+    command = [&] {
+      const CompareResult result = compare(left, right, tolerance, floor);
+      print(*communicator, result.text());
+      return result.equal() ? exit_success : exit_failure;
+    };
+  });
+
+  CLI::App* report_app = app.add_subcommand("report", "Print the report of a finished run");
+  report_app->add_option("DIR", folder, "run folder")->required();
+  report_app->callback([&] {
+    command = [&] {
+      print(*communicator, readable(read_report(folder)));
+      return exit_success;
+    };
+  });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // The library prints help and version to the first stream, mistakes to the second.
+    if (communicator->getRank() == 0) app.exit(error);
+    return error.get_exit_code() == 0 ? exit_success : exit_bad_input;
+  }
+
+  try {
+    return command();
+  } catch (...) {
+    return report_failure(std::current_exception(), *communicator);
+  }
+}
+
+}  // namespace kiln
