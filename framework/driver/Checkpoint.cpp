@@ -1,0 +1,85 @@
+#include "framework/driver/Checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "framework/base/Error.hpp"
+#include "framework/files/AtomicFile.hpp"
+#include "framework/files/Hdf5.hpp"
+#include "framework/files/Unknown.hpp"
+#include "framework/report/RunReport.hpp"
+
+namespace kiln {
+namespace {
+
+constexpr long long format = 1;
+
+/// First line in which two texts differ, as "'a' there, 'b' here".
+std::string first_difference(const std::string& there, const std::string& here) {
+  std::istringstream there_lines(there), here_lines(here);
+  std::string there_line, here_line;
+  while (true) {
+    const bool more_there = static_cast<bool>(std::getline(there_lines, there_line));
+    const bool more_here = static_cast<bool>(std::getline(here_lines, here_line));
+    if (!more_there) there_line.clear();
+    if (!more_here) here_line.clear();
+    if (there_line != here_line || (!more_there && !more_here)) {
+      return fmt::format("'{}' there, '{}' here", there_line, here_line);
+    }
+  }
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, int every, std::string identity)
+    : method_(context.method),
+      scheme_(scheme),
+      communicator_(context.communicator),
+      folder_(context.folder),
+      every_(every),
+      identity_(std::move(identity)) {}
+
+void Checkpoint::observe(const Moment& moment) {
+  if (moment.step == 0 || (moment.step % every_ != 0 && moment.step != moment.last_step)) return;
+  AtomicPath path(file(folder_), communicator_);
+  {
+    hdf5::File checkpoint = hdf5::File::create(path.temporary(), communicator_);
+    checkpoint.attribute("format", format);
+    checkpoint.attribute("identity", identity_);
+    checkpoint.attribute("step", moment.step);
+    checkpoint.attribute("time", moment.time);
+    save_unknown(checkpoint, "unknown", *method_.coordinates(), moment.x);
+    hdf5::Group scheme = checkpoint.create_group("scheme");
+    scheme_.save(scheme);
+    hdf5::Group method = checkpoint.create_group("method");
+    method_.save(method);
+  }
+  path.commit();
+  ++written_;
+}
+
+void Checkpoint::finish(RunReport& report) {
+  report.section("observers")["checkpoint"] = {{"file", file(folder_).filename().string()}, {"written", written_}};
+}
+
+int Checkpoint::restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
+                        TimeScheme& scheme, VectorView x, const Teuchos::RCP<const Communicator>& communicator) {
+  const std::string path = file(folder).string();
+  const hdf5::File checkpoint = hdf5::File::read(path, communicator);
+  if (checkpoint.integer("format") != format) {
+    throw FileError(path, "attribute format", fmt::format("version {}", checkpoint.integer("format")),
+                    fmt::format("version {}, which this Kiln writes", format));
+  }
+  const std::string saved = checkpoint.text("identity");
+  if (saved != identity) {
+    throw FileError(path, "", "is the checkpoint of another run: " + first_difference(saved, identity),
+                    "the same model, time and method blocks");
+  }
+  restore_unknown(checkpoint, "unknown", *method.coordinates(), x);
+  scheme.restore(checkpoint.group("scheme"));
+  method.restore(checkpoint.group("method"));
+  return static_cast<int>(checkpoint.integer("step"));
+}
+
+}  // namespace kiln

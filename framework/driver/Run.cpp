@@ -1,0 +1,224 @@
+#include "framework/driver/Run.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <optional>
+
+#include "framework/base/Error.hpp"
+#include "framework/driver/Checkpoint.hpp"
+#include "framework/driver/RunSpecification.hpp"
+#include "framework/driver/TimeLoop.hpp"
+#include "framework/files/AtomicFile.hpp"
+#include "framework/files/Folders.hpp"
+#include "framework/files/RunFolder.hpp"
+#include "framework/input/Input.hpp"
+#include "framework/method/Trainer.hpp"
+#include "framework/observers/Progress.hpp"
+#include "framework/registry/Registry.hpp"
+#include "framework/report/Provenance.hpp"
+#include "framework/report/ReportText.hpp"
+#include "framework/report/RunReport.hpp"
+#include "framework/report/Timing.hpp"
+
+namespace kiln {
+namespace {
+
+using Comm = Teuchos::RCP<const Communicator>;
+
+/// Everything one run is made of, built from its input in the order in which the parts need each other.
+class Assembly {
+ public:
+  Assembly(const Input& input, const std::filesystem::path& folder, const Comm& communicator, bool restart)
+      : span_(TimeSpan::of(input.list())) {
+    const Teuchos::ParameterList& list = input.list();
+    method_ = Registry<Method>::create(list.sublist("method"), {list, communicator});
+    scheme_ = Registry<TimeScheme>::create(list.sublist("time").sublist("scheme"), {*method_, span_.step});
+    x_ = VectorView("kiln::run::unknown", method_->coordinates()->getLocalNumElements());
+    const std::string identity = fmt::format("model:\n{}time:\n{}method:\n{}", to_yaml(list.sublist("model")),
+                                             to_yaml(list.sublist("time")), to_yaml(list.sublist("method")));
+    if (restart) {
+      span_.first_step = Checkpoint::restore(folder, identity, *method_, *scheme_, x_, communicator);
+    } else {
+      method_->initial(x_);
+      scheme_->start(x_, 0.0);
+    }
+    const Observer::Context context{*method_,        folder,     communicator, span_.first_step, span_.last_step,
+                                    span_.step,      {{"input", input.merged()},
+                                                      {"method", list.sublist("method").get<std::string>("type")}}};
+    const Teuchos::ParameterList& output = list.sublist("output");
+    for (auto entry = output.begin(); entry != output.end(); ++entry) {
+      const std::string& key = output.name(entry);
+      if (!output.isSublist(key) || key == "checkpoint") continue;
+      observers_.push_back(Registry<Observer>::create(output.sublist(key), context));
+    }
+    if (output.isSublist("checkpoint")) {
+      observers_.push_back(std::make_unique<Checkpoint>(context, *scheme_, output.sublist("checkpoint").get<int>("every"),
+                                                        identity));
+    }
+  }
+
+  void add(std::unique_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
+
+  LoopTotals march() {
+    std::vector<Observer*> observers;
+    for (const auto& observer : observers_) observers.push_back(observer.get());
+    return run_time_loop(*method_, *scheme_, x_, span_, observers);
+  }
+
+  void finish(RunReport& report) {
+    for (const auto& observer : observers_) observer->finish(report);
+    method_->report(report.section("method"));
+  }
+
+  const TimeSpan& span() const { return span_; }
+  Method& method() { return *method_; }
+
+ private:
+  TimeSpan span_;
+  std::unique_ptr<Method> method_;
+  std::unique_ptr<TimeScheme> scheme_;
+  VectorView x_;
+  std::vector<std::unique_ptr<Observer>> observers_;
+};
+
+/// Builds with errors of components placed in the input file.
+template <class Build>
+auto located(const Input& input, Build&& build) {
+  try {
+    return build();
+  } catch (const InputError& error) {
+    throw input.located(error);
+  }
+}
+
+void report_solve(RunReport& report, const LoopTotals& totals) {
+  const double steps = std::max(totals.steps, 1);
+  report.section("solve") = {{"residuals", totals.residuals},
+                             {"residuals_per_step", static_cast<double>(totals.residuals) / steps},
+                             {"iterations", totals.iterations},
+                             {"iterations_per_step", static_cast<double>(totals.iterations) / steps},
+                             {"capped_steps", totals.capped_steps}};
+}
+
+void write_report(const RunReport& report, const std::filesystem::path& folder, const Comm& communicator, bool quiet) {
+  const std::string text = readable(report.facts());
+  write_atomically(folder / "report.json", report.facts().dump(2) + "\n", communicator);
+  write_atomically(folder / "report.txt", text, communicator);
+  if (!quiet && communicator->getRank() == 0) {
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+  }
+}
+
+Input read_input(const CommandOptions& options, const Comm& communicator) {
+  return Input::read(options.file, options.overrides, run_specification(), *communicator);
+}
+
+/// A folder that goes when its owner goes.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const Communicator& communicator) : communicator_(communicator) {
+    std::string path(4096, '\0');
+    if (communicator.getRank() == 0) {
+      std::string pattern = (std::filesystem::temp_directory_path() / "kiln-check-XXXXXX").string();
+      if (mkdtemp(pattern.data()) != nullptr) path.replace(0, pattern.size(), pattern);
+    }
+    Teuchos::broadcast(communicator, 0, static_cast<int>(path.size()), path.data());
+    path_ = path.c_str();
+    if (path_.empty()) throw FileError(std::filesystem::temp_directory_path(), "", "no folder can be made in it");
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (communicator_.getRank() == 0) std::filesystem::remove_all(path_, ignored);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  const Communicator& communicator_;
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+void run(const CommandOptions& options, const Comm& communicator) {
+  const Stopwatch total(communicator);
+  const Input input = read_input(options, communicator);
+  const Teuchos::ParameterList& list = input.list();
+  const RunFolder folder(run_folder(list), *communicator);
+
+  auto assembly = located(input, [&] {
+    return std::make_unique<Assembly>(input, folder.path(), communicator, options.restart);
+  });
+  const std::string type = list.sublist("method").get<std::string>("type");
+  if (!options.quiet) {
+    assembly->add(std::make_unique<Progress>(type, assembly->span().last_step, communicator));
+  }
+  const Seconds setup = total.elapsed();
+
+  RunReport report;
+  nlohmann::json& facts = report.section("run");
+  facts = {{"title", list.get<std::string>("title")}, {"input", input.file()},
+           {"method", type},                          {"status", "complete"},
+           {"steps", assembly->span().last_step},     {"first_step", assembly->span().first_step},
+           {"step_s", assembly->span().step}};
+  report.section("provenance") = provenance(*communicator);
+
+  std::exception_ptr failure;
+  const Stopwatch loop(communicator);
+  LoopTotals totals;
+  try {
+    totals = assembly->march();
+  } catch (const DivergenceError& error) {
+    facts["status"] = fmt::format("diverged: {}", error.what());
+    failure = std::current_exception();
+  }
+  const Seconds stepping = loop.elapsed();
+  report_solve(report, totals);
+  if (failure == nullptr) assembly->finish(report);
+  const Seconds all = total.elapsed();
+  report.section("time") = {{"setup_wall_s", setup.wall},   {"setup_cpu_s", setup.cpu},  {"loop_wall_s", stepping.wall},
+                            {"loop_cpu_s", stepping.cpu},   {"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
+  write_report(report, folder.path(), communicator, options.quiet);
+  if (failure != nullptr) std::rethrow_exception(failure);
+}
+
+void check(const CommandOptions& options, const Comm& communicator) {
+  const Input input = read_input(options, communicator);
+  const TemporaryFolder folder(*communicator);
+  located(input, [&] { return std::make_unique<Assembly>(input, folder.path(), communicator, false); });
+  if (communicator->getRank() == 0) {
+    std::fputs(input.merged().c_str(), stdout);
+    std::fflush(stdout);
+  }
+}
+
+void train(const CommandOptions& options, const Comm& communicator) {
+  const Stopwatch total(communicator);
+  const Input input = read_input(options, communicator);
+  const Teuchos::ParameterList& list = input.list();
+  if (!list.isSublist("reduction")) {
+    throw input.located(InputError("", "the input has no block 'reduction'",
+                                   "a block that says how to train, e.g. reduction: {type: procedure ii, …}"));
+  }
+  const RunFolder folder(training_folder(list), *communicator);
+  RunReport report;
+  report.section("run") = {{"title", list.get<std::string>("title")},
+                           {"input", input.file()},
+                           {"method", list.sublist("reduction").get<std::string>("type")},
+                           {"status", "complete"}};
+  report.section("provenance") = provenance(*communicator);
+  located(input, [&] {
+    auto trainer = Registry<Trainer>::create(list.sublist("reduction"), {list, communicator});
+    trainer->train(reduction_file(list), report);
+    return 0;
+  });
+  const Seconds all = total.elapsed();
+  report.section("time") = {{"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
+  write_report(report, folder.path(), communicator, options.quiet);
+}
+
+}  // namespace kiln
