@@ -64,10 +64,11 @@ class PetrovGalerkin : public Method {
   /// Evaluates state and rate for x; f: rows × components. Fills residual_ and g_ = Ψᵀr; returns ‖g_‖.
   double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
   void project(ConstVectorView rows, VectorView g);
+  /// The step of an explicit scheme in an affine trial space, linear in û: one update, one evaluation of f.
+  SolveReport solve_explicit(const StepResidual& residual, VectorView x, VectorView u, VectorView f);
   /// Halves the update until ‖Ψᵀr‖ falls below `norm`; x already holds x − step_. Returns the new norm.
   double search_line(const StepResidual& residual, VectorView x, VectorView f, double norm, double next,
                      SolveReport& report);
-  void require_finite(double norm, double time, ConstVectorView f) const;
   [[noreturn]] void throw_diverged(const std::string& what, double time, ConstVectorView values) const;
 
   std::shared_ptr<Model> model_;
