@@ -25,6 +25,17 @@ std::string file_text(const std::string& file, const std::string& place, const s
   return line;
 }
 
+std::string divergence_text(const std::string& what, const std::optional<int>& step, double time,
+                            const std::optional<DivergenceError::Place>& place) {
+  std::string line = step ? fmt::format("step {}, t = {:.6g} s", *step, time) : fmt::format("t = {:.6g} s", time);
+  if (place) line += fmt::format(", particle {}", place->particle);
+  if (place && place->position) {
+    const auto& [x, y, z] = *place->position;
+    line += fmt::format(" at ({:.6g}, {:.6g}, {:.6g}) m", x, y, z);
+  }
+  return fmt::format("{}: {}", line, what);
+}
+
 }  // namespace
 
 InputError::InputError(std::vector<Problem> problems)
@@ -41,12 +52,28 @@ NotOffered::NotOffered(std::string_view class_name, std::string_view method, std
     : std::logic_error(instead.empty() ? fmt::format("{} does not offer {}", class_name, method)
                                        : fmt::format("{} does not offer {}; {}", class_name, method, instead)) {}
 
+DivergenceError::DivergenceError(std::string what, std::optional<int> step, double time, std::optional<Place> place)
+    : std::runtime_error(divergence_text(what, step, time, place)),
+      problem_(std::move(what)),
+      step_(step),
+      time_(time),
+      place_(place) {}
+
+DivergenceError::DivergenceError(std::string what, double time)
+    : DivergenceError(std::move(what), std::nullopt, time, std::nullopt) {}
+
+DivergenceError::DivergenceError(std::string what, double time, Place place)
+    : DivergenceError(std::move(what), std::nullopt, time, std::optional<Place>(place)) {}
+
 DivergenceError::DivergenceError(std::string what, int step, double time)
-    : std::runtime_error(fmt::format("step {}, t = {:.6g} s: {}", step, time, what)) {}
+    : DivergenceError(std::move(what), std::optional<int>(step), time, std::nullopt) {}
 
 DivergenceError::DivergenceError(std::string what, int step, double time, long long particle,
                                  std::array<double, 3> position)
-    : std::runtime_error(fmt::format("step {}, t = {:.6g} s, particle {} at ({:.6g}, {:.6g}, {:.6g}) m: {}", step, time,
-                                     particle, position[0], position[1], position[2], what)) {}
+    : DivergenceError(std::move(what), std::optional<int>(step), time, Place{particle, position}) {}
+
+DivergenceError DivergenceError::at_step(int step) const {
+  return DivergenceError(problem_, step_.value_or(step), time_, place_);
+}
 
 }  // namespace kiln

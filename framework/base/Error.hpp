@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -45,12 +46,34 @@ class NotOffered : public std::logic_error {
   NotOffered(std::string_view class_name, std::string_view method, std::string_view instead = {});
 };
 
-/// A solve that diverged or a state that is not finite. Exit status 3.
+/// A solve that diverged or a state that is not finite. Exit status 3. Solvers know the time only; whoever counts the
+/// steps adds theirs with at_step. Every rank throws the same one.
 class DivergenceError : public std::runtime_error {
  public:
+  /// A particle with the worst value, and where it lies in metres if that is known.
+  struct Place {
+    long long particle;
+    std::optional<std::array<double, 3>> position;
+  };
+
+  DivergenceError(std::string what, double time);
+  DivergenceError(std::string what, double time, Place place);
   DivergenceError(std::string what, int step, double time);
   /// Names the particle with the worst value as well; `position` in metres.
   DivergenceError(std::string what, int step, double time, long long particle, std::array<double, 3> position);
+
+  /// The same error with the step's number in front; a number already there stays.
+  DivergenceError at_step(int step) const;
+  const std::optional<int>& step() const { return step_; }
+  double time() const { return time_; }
+  const std::optional<Place>& place() const { return place_; }
+
+ private:
+  DivergenceError(std::string what, std::optional<int> step, double time, std::optional<Place> place);
+  std::string problem_;
+  std::optional<int> step_;
+  double time_;
+  std::optional<Place> place_;
 };
 
 }  // namespace kiln

@@ -38,4 +38,7 @@ using ConstMatrixView = Kokkos::View<const double**, Kokkos::LayoutLeft, Device>
 using PositionView = Kokkos::View<double* [3], Kokkos::LayoutRight, Device>;
 using ConstPositionView = Kokkos::View<const double* [3], Kokkos::LayoutRight, Device>;
 
+/// Entries of a map on this rank. The member function that says so was renamed between Trilinos 13 and 14.
+inline LocalIndex local_size(const Map& map) { return map.getMaxLocalIndex() + 1; }
+
 }  // namespace kiln
