@@ -35,23 +35,22 @@ void copy(const ConstVectorView& from, const VectorView& to) { std::copy_n(from.
 
 }  // namespace
 
-PetrovGalerkin::PetrovGalerkin(std::shared_ptr<Model> model, std::unique_ptr<TrialSpace> trial,
-                               std::unique_ptr<TestBasis> test, Held held, const NewtonSettings& settings)
-    : model_(std::move(model)),
-      trial_(std::move(trial)),
-      test_basis_(std::move(test)),
-      held_(std::move(held)),
+PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings)
+    : model_(std::move(parts.model)),
+      trial_(std::move(parts.trial)),
+      test_basis_(std::move(parts.test)),
+      held_(std::move(parts.held)),
       settings_(settings),
       communicator_(model_->rows()->getComm()),
       coordinates_(Teuchos::rcp(new Map(trial_->size(), 0, communicator_, Tpetra::LocallyReplicated))),
       jacobian_(*model_, settings.jacobian) {
   const std::size_t components = model_->fields().size(), size = trial_->size();
-  const std::size_t rows = model_->rows()->getLocalNumElements() * components;
+  const std::size_t rows = model_->rows()->getMyGlobalIndices().extent(0) * components;
   row_size_ = static_cast<LocalIndex>(rows);
   frozen_.x = VectorView("kiln::rom::frozen coordinates", size);
   jacobian_tangent_ = MatrixView("kiln::rom::J Phi", rows, size);
   small_ = MatrixView("kiln::rom::reduced Jacobian", size, size);
-  state_ = VectorView("kiln::rom::state of the sources", model_->sources()->getLocalNumElements() * components);
+  state_ = VectorView("kiln::rom::state of the sources", model_->sources()->getMyGlobalIndices().extent(0) * components);
   rate_ = VectorView("kiln::rom::rate", rows);
   residual_ = VectorView("kiln::rom::residual", rows);
   g_ = VectorView("kiln::rom::reduced residual", size);
@@ -134,6 +133,7 @@ int PetrovGalerkin::rate(ConstVectorView x, double time, VectorView dxdt) {
   if (!linearised_for(1.0, 0.0)) linearise(1.0, 0.0, x, time);
   trial_->state(x, state_);
   model_->rate(state_, time, rate_);
+  if (observer_) observer_(rate_);
   project(rate_, dxdt);
   if (!std::isfinite(norm_of(dxdt))) throw_diverged("the rate is not finite", time, rate_);
   factors_.solve(dxdt);
@@ -199,6 +199,7 @@ SolveReport PetrovGalerkin::solve_explicit(const StepResidual& residual, VectorV
   trial_->state(x, state_);
   // The rate's factor is zero; any finite array may stand for it.
   form_residual(residual, state_, residual.history, residual_);
+  if (observer_) observer_(residual_);
   project(residual_, g_);
   SolveReport report;
   report.first_norm = norm_of(g_);

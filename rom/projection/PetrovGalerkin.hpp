@@ -31,9 +31,15 @@ class PetrovGalerkin : public Method {
     std::unique_ptr<TrialSpace> trial;
   };
 
-  /// `trial` stands on the model's sources, `test` on its rows.
-  PetrovGalerkin(std::shared_ptr<Model> model, std::unique_ptr<TrialSpace> trial, std::unique_ptr<TestBasis> test,
-                 Held held, const NewtonSettings& settings);
+  /// What a projection is made of.
+  struct Parts {
+    std::shared_ptr<Model> model;
+    std::unique_ptr<TrialSpace> trial;  ///< on the model's sources
+    std::unique_ptr<TestBasis> test;    ///< on its rows
+    Held held;
+  };
+
+  PetrovGalerkin(Parts parts, const NewtonSettings& settings);
 
   Teuchos::RCP<const Map> coordinates() const override { return coordinates_; }
   LocalIndex row_size() const override { return row_size_; }
@@ -55,7 +61,8 @@ class PetrovGalerkin : public Method {
   void restore(const hdf5::Group& group) override;
   void report(nlohmann::json& section) const override;
 
-  /// Called with the residual at the rows, rows × components, of every iteration: how residual snapshots are taken.
+  /// Called with the residual at the rows, rows × components, of every iteration, and with the rate of every explicit
+  /// stage: how residual snapshots are taken.
   void observe_residuals(std::function<void(ConstVectorView)> observer) { observer_ = std::move(observer); }
 
  private:

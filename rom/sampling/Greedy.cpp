@@ -25,7 +25,7 @@ class Candidates {
       : rows_(rows),
         modes_(modes),
         components_(components),
-        taken_(rows.getLocalNumElements(), false),
+        taken_(rows.getMyGlobalIndices().extent(0), false),
         errors_(taken_.size(), 0.0),
         misfit_("kiln::rom::misfit", modes.extent(0)) {}
 
