@@ -14,8 +14,9 @@ namespace kiln {
 ///     (α0 I − γ ∂f/∂u) δ = −r(u),   u ← u + s δ,
 ///
 /// with ∂f/∂u frozen for `refresh` steps. It stops at ‖r‖ ≤ tolerance · ‖r before the first update of the step‖ (2-norm
-/// over all ranks), when r is down to the round-off of its own terms, or at the cap of updates. With a line search, s is
-/// halved until the norm falls; an update that no halving saves is kept at its shortest and ends the step unconverged.
+/// over all ranks), when r is down to the round-off of its own terms, or at the cap of updates. With a line search, s
+/// is halved until the norm falls; an update that no halving saves is kept at its shortest and ends the step
+/// unconverged.
 class FullOrder : public Method {
  public:
   /// A norm this many times the first one of its step is divergence.
@@ -26,7 +27,8 @@ class FullOrder : public Method {
   /// Creates the model of the block `model` and reads `time.newton`.
   FullOrder(const Teuchos::ParameterList& block, const Context& context);
   /// Takes a model that is there. `solver` may be null for a diagonal Jacobian.
-  FullOrder(std::shared_ptr<Model> model, const NewtonSettings& settings, std::shared_ptr<LinearSolver> solver = nullptr);
+  FullOrder(std::shared_ptr<Model> model, const NewtonSettings& settings,
+            std::shared_ptr<LinearSolver> solver = nullptr);
 
   Teuchos::RCP<const Map> coordinates() const override { return halo_.rows(); }
   LocalIndex row_size() const override { return halo_.row_size(); }
@@ -56,15 +58,19 @@ class FullOrder : public Method {
  private:
   /// Fills the sources from x and evaluates f there.
   void rate_at(ConstVectorView x, double time, VectorView f);
-  /// r(x) into residual_; returns its norm.
-  double residual_norm(const StepResidual& residual, ConstVectorView x, ConstVectorView f);
+  /// Evaluates f(x) and residual_ = r(x); returns the residual's norm.
   double norm_at(const StepResidual& residual, ConstVectorView x, VectorView f);
-  void refresh_jacobian(double time);
-  /// Replaces x by x + δ, shortened by the line search if there is one; returns the new norm.
-  double update(const StepResidual& residual, double norm, VectorView x, VectorView f, SolveReport& report);
-  /// Throws the DivergenceError that names the first particle without finite values, or that of the largest residual.
-  [[noreturn]] void diverged(const std::string& what, double time, ConstVectorView x, ConstVectorView f,
-                             ConstVectorView measure) const;
+  double sum_over_ranks_root(double local) const;
+  SolveReport solve_explicit(const StepResidual& residual, VectorView x, VectorView f);
+  SolveReport solve_implicit(const StepResidual& residual, VectorView x, VectorView f);
+  /// Freezes ∂f/∂u at x, which the sources hold already.
+  void refresh_jacobian(ConstVectorView x, double time);
+  /// −δ into update_, from residual_.
+  void find_update(const StepResidual& residual);
+  /// x ← x + δ. Returns whether another update may help.
+  bool full_update(const StepResidual& residual, VectorView x, VectorView f, double& norm, SolveReport& report);
+  /// x ← x + s δ with the line search. Returns false where no s lowered the norm.
+  bool searched_update(const StepResidual& residual, VectorView x, VectorView f, double& norm, SolveReport& report);
 
   std::shared_ptr<Model> model_;
   NewtonSettings settings_;
@@ -77,7 +83,6 @@ class FullOrder : public Method {
   double frozen_time_ = 0.0;
   int age_ = -1;  ///< steps since then; −1: nowhere yet
   int jacobian_evaluations_ = 0;
-  long long linear_solves_ = 0;
   long long linear_iterations_ = 0;
 };
 

@@ -1,0 +1,60 @@
+#include "framework/driver/TimeLoop.hpp"
+
+#include <fmt/format.h>
+
+#include <Teuchos_ParameterList.hpp>
+#include <Teuchos_TimeMonitor.hpp>
+#include <cmath>
+#include <limits>
+
+#include "framework/base/Error.hpp"
+
+namespace kiln {
+namespace {
+
+void show(const Moment& moment, const std::vector<Observer*>& observers) {
+  const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewCounter("kiln: observers"));
+  for (Observer* observer : observers) observer->observe(moment);
+}
+
+}  // namespace
+
+TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
+  const Teuchos::ParameterList& time = input.sublist("time");
+  const double step = time.get<double>("step");
+  const double end = time.get<double>("end");
+  const double count = std::round(end / step);
+  if (!(count >= 1.0) || std::abs(end / step - count) > 1e-6) {
+    throw InputError("time.end", fmt::format("{:.10g} s is {:.10g} steps of {:.10g} s", end, end / step, step),
+                     "a whole number of steps, at least one");
+  }
+  if (count > std::numeric_limits<int>::max()) {
+    throw InputError("time.end", fmt::format("{:.10g} s is {:.4g} steps of {:.10g} s", end, count, step),
+                     fmt::format("at most {} steps", std::numeric_limits<int>::max()));
+  }
+  return {step, 0, static_cast<int>(count)};
+}
+
+LoopTotals run_time_loop(Method&, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+                         const std::vector<Observer*>& observers) {
+  LoopTotals totals;
+  if (span.first_step == 0) show({0, span.last_step, 0.0, x, {}}, observers);
+  for (int step = span.first_step + 1; step <= span.last_step; ++step) {
+    const double time = step * span.step;
+    SolveReport solve;
+    try {
+      const Teuchos::TimeMonitor timer(*Teuchos::TimeMonitor::getNewCounter("kiln: time step"));
+      solve = scheme.advance(x, time);
+    } catch (const DivergenceError& error) {
+      throw error.at_step(step);
+    }
+    ++totals.steps;
+    totals.residuals += solve.residuals;
+    totals.iterations += solve.iterations;
+    totals.capped_steps += solve.converged ? 0 : 1;
+    show({step, span.last_step, time, x, solve}, observers);
+  }
+  return totals;
+}
+
+}  // namespace kiln
