@@ -37,6 +37,9 @@ class Group {
   void attribute(const std::string& name, double value);
   void attribute(const std::string& name, long long value);
   void attribute(const std::string& name, int value) { attribute(name, static_cast<long long>(value)); }
+  void attribute(const std::string& name, const std::vector<long long>& values);
+  /// A text in the fixed-length ASCII form that some readers insist on.
+  void ascii_attribute(const std::string& name, const std::string& value);
   /// Attribute of a dataset of this group, e.g. its unit.
   void attribute_of(const std::string& dataset, const std::string& name, const std::string& value);
   bool has_attribute(const std::string& name) const;
@@ -72,6 +75,12 @@ class Group {
   /// that the file stays readable should the program be killed in between. Unwritten entries are `fill`.
   void create_reals(const std::string& name, const std::vector<std::size_t>& shape, double fill);
   void create_integers(const std::string& name, const std::vector<std::size_t>& shape, long long fill);
+  void create_bytes(const std::string& name, const std::vector<std::size_t>& shape, unsigned char fill);
+  /// A one-dimensional dataset that shows row `row` of the two-dimensional dataset of reals at the absolute path
+  /// `dataset` and stores nothing itself (HDF5's virtual layout).
+  void create_row_view(const std::string& name, const std::string& dataset, std::size_t row);
+  /// A second name for the object at the absolute path `target`.
+  void link(const std::string& name, const std::string& target);
   /// Writes this rank's block of a dataset; blocks of ranks may not overlap and may be empty. values: row-major.
   void write_block(const std::string& name, const std::vector<std::size_t>& start,
                    const std::vector<std::size_t>& count, const std::vector<double>& values);

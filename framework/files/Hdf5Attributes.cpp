@@ -1,4 +1,5 @@
 #include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
@@ -19,14 +20,15 @@ std::string place(const Node& node, const std::string& owner, const std::string&
   return (owner.empty() ? node.path : node.path_of(owner)) + " attribute '" + attribute + "'";
 }
 
+Id scalar() { return Id(H5Screate(H5S_SCALAR), H5Sclose); }
+
 /// Metadata: all ranks must write the same value. An empty `owner` is the group itself.
-void write_attribute(const Node& node, const std::string& owner, const std::string& name, hid_t type,
+void write_attribute(const Node& node, const std::string& owner, const std::string& name, hid_t type, hid_t space,
                      const void* value) {
   bool written = false;
   const Id object(H5Oopen(node.id, owner.empty() ? "." : owner.c_str(), H5P_DEFAULT), H5Oclose);
   if (object.valid()) {
     if (H5Aexists(object, name.c_str()) > 0) H5Adelete(object, name.c_str());
-    const Id space(H5Screate(H5S_SCALAR), H5Sclose);
     const Id attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     written = attribute.valid() && H5Awrite(attribute, type, value) >= 0;
   }
@@ -39,13 +41,13 @@ void write_attribute(const Node& node, const std::string& owner, const std::stri
 void write_text(const Node& node, const std::string& owner, const std::string& name, const std::string& value) {
   const std::string text = broadcast(node.communicator(), value);
   const char* start = text.c_str();
-  write_attribute(node, owner, name, text_type(), &start);
+  write_attribute(node, owner, name, text_type(), scalar(), &start);
 }
 
 template <class T>
 void write_number(const Node& node, const std::string& name, hid_t type, T value) {
   Teuchos::broadcast(node.communicator(), 0, 1, &value);
-  write_attribute(node, "", name, type, &value);
+  write_attribute(node, "", name, type, scalar(), &value);
 }
 
 struct Attribute {
@@ -114,6 +116,20 @@ std::string read_text(const Node& node, const std::string& owner, const std::str
 void Group::attribute(const std::string& name, const std::string& value) { write_text(*node_, "", name, value); }
 void Group::attribute(const std::string& name, double value) { write_number(*node_, name, H5T_NATIVE_DOUBLE, value); }
 void Group::attribute(const std::string& name, long long value) { write_number(*node_, name, H5T_NATIVE_LLONG, value); }
+
+void Group::attribute(const std::string& name, const std::vector<long long>& values) {
+  const hsize_t length = values.size();
+  const Id space(H5Screate_simple(1, &length, nullptr), H5Sclose);
+  write_attribute(*node_, "", name, H5T_NATIVE_LLONG, space, values.data());
+}
+
+void Group::ascii_attribute(const std::string& name, const std::string& value) {
+  const std::string text = broadcast(node_->communicator(), value);
+  const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, std::max<std::size_t>(1, text.size()));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  write_attribute(*node_, "", name, type, scalar(), text.c_str());
+}
 
 void Group::attribute_of(const std::string& dataset, const std::string& name, const std::string& value) {
   write_text(*node_, dataset, name, value);

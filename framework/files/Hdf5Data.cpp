@@ -218,6 +218,33 @@ void Group::create_integers(const std::string& name, const std::vector<std::size
   create_dataset(*node_, name, H5T_NATIVE_LLONG, shape, &fill, true);
 }
 
+void Group::create_bytes(const std::string& name, const std::vector<std::size_t>& shape, unsigned char fill) {
+  create_dataset(*node_, name, H5T_NATIVE_UCHAR, shape, &fill, true);
+}
+
+void Group::create_row_view(const std::string& name, const std::string& dataset, std::size_t row) {
+  const std::vector<std::size_t> shape = open_dataset(*node_, dataset, H5T_FLOAT).shape;
+  if (shape.size() != 2 || row >= shape[0]) {
+    node_->fail(dataset, "has shape " + shape_text(shape), fmt::format("two dimensions and a row {}", row));
+  }
+  const Id source = data_space(shape);
+  const Id view = data_space({shape[1]});
+  const hsize_t start[2] = {row, 0};
+  const hsize_t count[2] = {1, shape[1]};
+  H5Sselect_hyperslab(source, H5S_SELECT_SET, start, nullptr, count, nullptr);
+  const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_virtual(properties, view, ".", dataset.c_str(), source);
+  const Id created(H5Dcreate2(node_->id, name.c_str(), H5T_NATIVE_DOUBLE, view, H5P_DEFAULT, properties, H5P_DEFAULT),
+                   H5Dclose);
+  node_->require(created.valid(), name, "created");
+}
+
+void Group::link(const std::string& name, const std::string& target) {
+  const herr_t linked =
+      H5Lcreate_hard(node_->file->id, target.c_str(), node_->id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+  node_->require(linked >= 0, name, "linked to " + target);
+}
+
 void Group::write_block(const std::string& name, const std::vector<std::size_t>& start,
                         const std::vector<std::size_t>& count, const std::vector<double>& values) {
   write_slab(*node_, open_dataset(*node_, name, H5T_FLOAT), name, start, count, H5T_NATIVE_DOUBLE, values.data());

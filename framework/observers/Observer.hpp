@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "framework/method/Method.hpp"
 
@@ -28,6 +30,8 @@ class Observer {
     int first_step;  ///< 0, or the step of the checkpoint a restarted run continues from
     int last_step;
     double step;  ///< Δt in s
+    /// What outputs say of the run besides versions and machine, e.g. "input" and "method"; attributes of its files.
+    std::map<std::string, std::string> provenance = {};
   };
   static constexpr const char* category = "observer";
 

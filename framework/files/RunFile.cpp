@@ -1,0 +1,187 @@
+#include "framework/files/RunFile.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "framework/base/Error.hpp"
+#include "framework/files/AtomicFile.hpp"
+#include "framework/files/Together.hpp"
+
+namespace kiln {
+namespace {
+
+constexpr double not_written = std::numeric_limits<double>::quiet_NaN();
+
+hdf5::File open(const std::filesystem::path& folder, int first_step,
+                const Teuchos::RCP<const Communicator>& communicator) {
+  const std::string path = (folder / "run.h5").string();
+  return first_step > 0 ? hdf5::File::modify(path, communicator) : hdf5::File::create(path, communicator);
+}
+
+/// A vector of particles × components as a matrix.
+MatrixView matrix_of(ConstVectorView u, LocalIndex particles, int components) {
+  MatrixView matrix("kiln::files::frame", static_cast<std::size_t>(particles), static_cast<std::size_t>(components));
+  Kokkos::parallel_for(
+      "kiln::files::components", RangePolicy(0, particles), KOKKOS_LAMBDA(const LocalIndex i) {
+        for (int c = 0; c < components; ++c) matrix(i, c) = u(i * components + c);
+      });
+  return matrix;
+}
+
+MatrixView matrix_of(ConstPositionView positions) {
+  MatrixView matrix("kiln::files::positions", positions.extent(0), 3);
+  Kokkos::parallel_for(
+      "kiln::files::positions", RangePolicy(0, static_cast<LocalIndex>(positions.extent(0))),
+      KOKKOS_LAMBDA(const LocalIndex i) {
+        for (int d = 0; d < 3; ++d) matrix(i, d) = positions(i, d);
+      });
+  return matrix;
+}
+
+}  // namespace
+
+RunFile::RunFile(std::filesystem::path folder, const Map& particles, ConstPositionView positions, Contents contents,
+                 int first_step, Teuchos::RCP<const Communicator> communicator)
+    : folder_(std::move(folder)),
+      communicator_(std::move(communicator)),
+      contents_(std::move(contents)),
+      order_(particles),
+      file_(open(folder_, first_step, communicator_)) {
+  if (first_step > 0) {
+    reopen(first_step);
+  } else {
+    create(positions);
+  }
+  file_.flush();
+  write_xdmf();
+}
+
+void RunFile::create(ConstPositionView positions) {
+  const std::size_t particles = order_.rows();
+  const std::size_t frames = contents_.steps.size();
+  for (const auto& [name, value] : contents_.provenance) file_.attribute(name, value);
+  file_.create_integers("particle", {particles}, -1);
+  file_.write_block("particle", {order_.first()}, {order_.count()}, order_.ids());
+  file_.create_reals("position", {particles, 3}, not_written);
+  file_.write_block("position", {order_.first(), 0}, {order_.count(), 3}, order_.slab(matrix_of(positions)));
+  file_.attribute_of("position", "unit", "m");
+  file_.create_reals("time", {frames}, not_written);
+  file_.attribute_of("time", "unit", "s");
+  file_.create_integers("step", {frames}, -1);
+  for (const Field& field : contents_.fields) {
+    file_.create_reals(field.name, {frames, particles}, not_written);
+    file_.attribute_of(field.name, "unit", field.unit);
+  }
+  hdf5::Group views = file_.create_group("frame");
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    hdf5::Group view = views.create_group(std::to_string(frame));
+    for (const Field& field : contents_.fields) view.create_row_view(field.name, "/" + field.name, frame);
+  }
+  create_vtkhdf();
+}
+
+/// VTK's own file format: an unstructured grid with one vertex cell a particle.
+void RunFile::create_vtkhdf() {
+  constexpr unsigned char vertex = 1;  // VTK_VERTEX
+  const std::size_t particles = order_.rows();
+  hdf5::Group group = file_.create_group("VTKHDF");
+  group.attribute("Version", std::vector<long long>{1, 0});
+  group.ascii_attribute("Type", "UnstructuredGrid");
+  for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"}) {
+    group.write(name, std::vector<long long>{static_cast<long long>(particles)});
+  }
+  group.link("Points", "/position");
+  std::vector<long long> numbers(order_.count());
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<long long>(order_.first() + i);
+  group.create_integers("Connectivity", {particles}, 0);
+  group.write_block("Connectivity", {order_.first()}, {order_.count()}, numbers);
+  // The fill value is the last entry: one past the last vertex.
+  group.create_integers("Offsets", {particles + 1}, static_cast<long long>(particles));
+  group.write_block("Offsets", {order_.first()}, {order_.count()}, numbers);
+  group.create_bytes("Types", {particles}, vertex);
+  hdf5::Group data = group.create_group("PointData");
+  data.link("particle", "/particle");
+  for (const Field& field : contents_.fields) data.create_reals(field.name, {particles}, not_written);
+}
+
+void RunFile::reopen(int first_step) {
+  const std::size_t particles = order_.rows();
+  const std::size_t frames = contents_.steps.size();
+  const std::vector<long long> ids = file_.integers("particle", {particles}).values;
+  const bool same =
+      std::equal(order_.ids().begin(), order_.ids().end(), ids.begin() + static_cast<std::ptrdiff_t>(order_.first()));
+  throw_together(*communicator_, path(),
+                 same ? std::nullopt
+                      : std::optional<Fault>(Fault{"/particle", "holds other particles than this run",
+                                                   "the file that the interrupted run left"}));
+  for (const Field& field : contents_.fields) {
+    const std::vector<std::size_t> shape = file_.shape(field.name);
+    if (shape != std::vector<std::size_t>{frames, particles}) {
+      throw FileError(path(), "/" + field.name, fmt::format("has shape {}", fmt::join(shape, " × ")),
+                      fmt::format("{} frames × {} particles; continue with the end time and the output interval of the "
+                                  "interrupted run, or in another folder",
+                                  frames, particles));
+    }
+  }
+  std::vector<double> times = file_.reals("time", {frames}).values;
+  std::vector<long long> steps = file_.integers("step", {frames}).values;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    const bool known = steps[frame] == -1 || steps[frame] == contents_.steps[frame];
+    if (!known) {
+      throw FileError(
+          path(), "/step", fmt::format("frame {} is of step {}", frame, steps[frame]),
+          fmt::format("step {}; continue with the output interval of the interrupted run", contents_.steps[frame]));
+    }
+    if (contents_.steps[frame] > first_step) {
+      times[frame] = not_written;
+      steps[frame] = -1;
+    } else if (!std::isnan(times[frame])) {
+      written_.push_back({frame, times[frame]});
+    }
+  }
+  const std::size_t count = root_count() * frames;
+  times.resize(count);
+  steps.resize(count);
+  file_.write_block("time", {0}, {count}, times);
+  file_.write_block("step", {0}, {count}, steps);
+}
+
+void RunFile::write(int step, double time, ConstVectorView u) {
+  const auto found = std::lower_bound(contents_.steps.begin(), contents_.steps.end(), step);
+  if (found == contents_.steps.end() || *found != step) {
+    throw std::logic_error(fmt::format("{}: step {} is none of the frames planned", path(), step));
+  }
+  const auto frame = static_cast<std::size_t>(found - contents_.steps.begin());
+  const std::size_t components = contents_.fields.size();
+  const auto particles = static_cast<LocalIndex>(u.extent(0) / components);
+  const std::vector<double> slab = order_.slab(matrix_of(u, particles, static_cast<int>(components)));
+  hdf5::Group newest = file_.group("VTKHDF/PointData");
+  std::vector<double> values(order_.count());
+  for (std::size_t c = 0; c < components; ++c) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = slab[i * components + c];
+    const std::string& name = contents_.fields[c].name;
+    file_.write_block(name, {frame, order_.first()}, {1, order_.count()}, values);
+    newest.write_block(name, {order_.first()}, {order_.count()}, values);
+  }
+  // The time comes last: it says that the frame is whole.
+  const std::size_t count = root_count();
+  file_.write_block("step", {frame}, {count}, std::vector<long long>(count, step));
+  file_.write_block("time", {frame}, {count}, std::vector<double>(count, time));
+  file_.flush();
+  written_.push_back({frame, time});
+  if (written_.size() >= next_xdmf_ || frame + 1 == contents_.steps.size()) write_xdmf();
+}
+
+void RunFile::write_xdmf() {
+  // Its length grows with the frames: writing it after each of very many would take longer than the frames.
+  next_xdmf_ = written_.size() + 1 + written_.size() / 16;
+  write_atomically(folder_ / "run.xdmf", xdmf("run.h5", order_.rows(), contents_.fields, written_), communicator_);
+}
+
+}  // namespace kiln

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/base/LinearAlgebra.hpp"
+#include "framework/files/Hdf5.hpp"
+#include "framework/files/RowOrder.hpp"
+#include "framework/files/Xdmf.hpp"
+#include "framework/model/Model.hpp"
+
+namespace kiln {
+
+/// A run's fields over time: `run.h5`, and `run.xdmf` beside it for ParaView.
+///
+/// | dataset | shape | holds |
+/// | --- | --- | --- |
+/// | `/particle` | n | global ids, ascending |
+/// | `/position` | n × 3 | m |
+/// | `/time`, `/step` | frames | s; NaN and −1 for a frame that is not written yet |
+/// | `/FIELD` | frames × n | one for each component of the state, with its unit |
+/// | `/frame/K/FIELD` | n | row K of `/FIELD`; a view, for readers of XDMF |
+/// | `/VTKHDF` | | particles and the newest frame, for VTK ≥ 9.1 |
+///
+/// Each dataset has an attribute `unit`; the root's attributes are the run's provenance. All space is taken at the
+/// start and no metadata changes later, so a run that is killed leaves a file that can be read.
+class RunFile {
+ public:
+  struct Contents {
+    std::vector<Field> fields;
+    std::vector<int> steps;                         ///< the step of each frame, ascending
+    std::map<std::string, std::string> provenance;  ///< attributes of the root
+  };
+
+  /// Makes `folder`/run.h5, or opens it to write the frames after `first_step` when that is above 0. positions:
+  /// particles × 3 in m. Throws FileError; among others when an existing file holds other particles, fields or frames.
+  /// Collective.
+  RunFile(std::filesystem::path folder, const Map& particles, ConstPositionView positions, Contents contents,
+          int first_step, Teuchos::RCP<const Communicator> communicator);
+
+  /// Writes the frame of `step`, one of Contents::steps. u: particles × components. Collective.
+  void write(int step, double time, ConstVectorView u);
+
+  std::size_t frames_written() const { return written_.size(); }
+  std::string path() const { return (folder_ / "run.h5").string(); }
+
+ private:
+  void create(ConstPositionView positions);
+  void create_vtkhdf();
+  void reopen(int first_step);
+  void write_xdmf();
+  std::size_t root_count() const { return communicator_->getRank() == 0 ? 1 : 0; }
+
+  std::filesystem::path folder_;
+  Teuchos::RCP<const Communicator> communicator_;
+  Contents contents_;
+  RowOrder order_;
+  hdf5::File file_;
+  std::vector<XdmfFrame> written_;
+  std::size_t next_xdmf_ = 0;  ///< frames written when the XDMF file is due again
+};
+
+}  // namespace kiln

@@ -1,0 +1,98 @@
+#include "rom/files/ParticleRows.hpp"
+
+#include <fmt/format.h>
+
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+
+#include "framework/base/Error.hpp"
+#include "rom/linear_algebra/Dense.hpp"
+
+namespace kiln {
+namespace {
+
+/// Rows `ids` of a matrix spread by `map`, on every rank, row-major.
+hdf5::Array<double> gather_rows(const std::vector<GlobalIndex>& ids, const Map& map, const ConstMatrixView& local) {
+  const std::size_t columns = local.extent(1);
+  hdf5::Array<double> result{{ids.size(), columns}, std::vector<double>(ids.size() * columns, 0.0)};
+  const auto owned = static_cast<LocalIndex>(map.getMyGlobalIndices().extent(0));
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const LocalIndex row = map.getLocalElement(ids[i]);
+    if (row < 0 || row >= owned) continue;
+    for (std::size_t k = 0; k < columns; ++k) result.values[i * columns + k] = local(row, k);
+  }
+  dense::sum_over_ranks(*map.getComm(), result.values.data(), result.values.size());
+  return result;
+}
+
+}  // namespace
+
+MatrixView fold(const MatrixView& entries, int components) {
+  if (components == 1) return entries;
+  const std::size_t particles = entries.extent(0) / components, columns = entries.extent(1);
+  MatrixView result("kiln::rom::folded", particles, columns * components);
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (int c = 0; c < components; ++c) {
+      for (std::size_t i = 0; i < particles; ++i) result(i, k * components + c) = entries(i * components + c, k);
+    }
+  }
+  return result;
+}
+
+MatrixView unfold(const MatrixView& particles, int components) {
+  if (components == 1) return particles;
+  const std::size_t count = particles.extent(0), columns = particles.extent(1) / components;
+  MatrixView result("kiln::rom::unfolded", count * components, columns);
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (int c = 0; c < components; ++c) {
+      for (std::size_t i = 0; i < count; ++i) result(i * components + c, k) = particles(i, k * components + c);
+    }
+  }
+  return result;
+}
+
+ParticleTable ParticleTable::gather(const std::vector<GlobalIndex>& ids, const Map& map, ConstPositionView positions,
+                                    const MatrixView& reference, const MatrixView& modes, int components) {
+  ParticleTable table;
+  table.ids = ids;
+  table.components = components;
+  const std::size_t owned = map.getMyGlobalIndices().extent(0);
+  MatrixView columns("kiln::rom::positions", owned, 3);
+  for (std::size_t i = 0; i < owned; ++i) {
+    for (int d = 0; d < 3; ++d) columns(i, d) = positions(i, d);
+  }
+  table.positions = gather_rows(ids, map, columns).values;
+  table.reference = gather_rows(ids, map, fold(reference, components));
+  table.modes = gather_rows(ids, map, fold(modes, components));
+  return table;
+}
+
+void ParticleTable::write(hdf5::Group& group, const std::string& ids_name) const {
+  group.write(ids_name, std::vector<long long>(ids.begin(), ids.end()));
+  group.write("positions", hdf5::Array<double>{{ids.size(), 3}, positions});
+  group.attribute_of("positions", "unit", "m");
+  group.write("reference", reference);
+  group.write("modes", modes);
+}
+
+ParticleTable ParticleTable::read(const hdf5::Group& group, const std::string& ids_name, int components, int modes) {
+  ParticleTable table;
+  const hdf5::Array<long long> ids = group.integers(ids_name, {0});
+  table.ids.assign(ids.values.begin(), ids.values.end());
+  table.components = components;
+  const std::size_t count = table.ids.size();
+  if (std::adjacent_find(table.ids.begin(), table.ids.end(), std::greater_equal<GlobalIndex>()) != table.ids.end()) {
+    throw FileError(group.file(), group.path() + "/" + ids_name, "particle ids are not in ascending order");
+  }
+  table.positions = group.reals("positions", {count, 3}).values;
+  table.reference = group.reals("reference", {count, static_cast<std::size_t>(components)});
+  table.modes = group.reals("modes", {count, static_cast<std::size_t>(modes) * components});
+  return table;
+}
+
+std::ptrdiff_t ParticleTable::find(GlobalIndex id) const {
+  const auto place = std::lower_bound(ids.begin(), ids.end(), id);
+  return place == ids.end() || *place != id ? -1 : place - ids.begin();
+}
+
+}  // namespace kiln

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/base/LinearAlgebra.hpp"
+#include "framework/files/Hdf5.hpp"
+
+namespace kiln {
+
+/// Files hold one row a particle; reductions compute with one row a particle and component. A matrix of k columns over
+/// particles × c components is folded into particles × (k · c): column k · c + j is component j of column k.
+MatrixView fold(const MatrixView& entries, int components);
+/// The inverse of fold().
+MatrixView unfold(const MatrixView& particles, int components);
+
+/// Some particles with all that reduced methods need of them, the same on every rank.
+struct ParticleTable {
+  std::vector<GlobalIndex> ids;       ///< ascending
+  int components = 1;
+  std::vector<double> positions;      ///< x, y, z of one particle after the other, in m
+  hdf5::Array<double> reference;      ///< ids × components
+  hdf5::Array<double> modes;          ///< ids × (M · components), folded
+
+  /// From distributed data: rows of `map`, each particle on one rank. `ids` ascending. Collective.
+  static ParticleTable gather(const std::vector<GlobalIndex>& ids, const Map& map, ConstPositionView positions,
+                              const MatrixView& reference, const MatrixView& modes, int components);
+  /// Datasets `ids_name`, positions, reference and modes of a group.
+  void write(hdf5::Group& group, const std::string& ids_name) const;
+  static ParticleTable read(const hdf5::Group& group, const std::string& ids_name, int components, int modes);
+
+  /// Place of a particle in the table; −1 if it is not there.
+  std::ptrdiff_t find(GlobalIndex id) const;
+};
+
+}  // namespace kiln

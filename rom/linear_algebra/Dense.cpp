@@ -1,0 +1,99 @@
+#include "rom/linear_algebra/Dense.hpp"
+
+#include <Teuchos_BLAS.hpp>
+#include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+
+namespace kiln::dense {
+namespace {
+
+using Blas = Teuchos::BLAS<int, double>;
+
+int rows(const ConstMatrixView& a) { return static_cast<int>(a.extent(0)); }
+int columns(const ConstMatrixView& a) { return static_cast<int>(a.extent(1)); }
+int leading_dimension(const ConstMatrixView& a) { return std::max<int>(1, std::max<int>(rows(a), a.stride(1))); }
+
+void scale(double beta, const VectorView& y) {
+  for (std::size_t i = 0; i < y.extent(0); ++i) y(i) = beta == 0.0 ? 0.0 : beta * y(i);
+}
+
+void multiply(Teuchos::ETransp transpose, double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta,
+              const VectorView& y) {
+  // BLAS returns at once for an empty matrix and leaves y as it was.
+  if (rows(a) == 0 || columns(a) == 0) return scale(beta, y);
+  Blas().GEMV(transpose, rows(a), columns(a), alpha, a.data(), leading_dimension(a), x.data(), 1, beta, y.data(), 1);
+}
+
+}  // namespace
+
+void multiply(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta, const VectorView& y) {
+  multiply(Teuchos::NO_TRANS, alpha, a, x, beta, y);
+}
+
+void multiply_transposed(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta,
+                         const VectorView& y) {
+  multiply(Teuchos::TRANS, alpha, a, x, beta, y);
+}
+
+void product(Transpose transpose_a, Transpose transpose_b, double alpha, const ConstMatrixView& a,
+             const ConstMatrixView& b, double beta, const MatrixView& c) {
+  const int inner = transpose_a == Transpose::yes ? rows(a) : columns(a);
+  if (rows(c) == 0 || columns(c) == 0) return;
+  if (inner == 0) {
+    for (int j = 0; j < columns(c); ++j) scale(beta, Kokkos::subview(c, Kokkos::ALL, j));
+    return;
+  }
+  Blas().GEMM(transpose_a == Transpose::yes ? Teuchos::TRANS : Teuchos::NO_TRANS,
+              transpose_b == Transpose::yes ? Teuchos::TRANS : Teuchos::NO_TRANS, rows(c), columns(c), inner, alpha,
+              a.data(), leading_dimension(a), b.data(), leading_dimension(b), beta, c.data(), leading_dimension(c));
+}
+
+MatrixView gram(const ConstMatrixView& a) {
+  const int size = columns(a);
+  MatrixView result("kiln::rom::gram", size, size);
+  if (rows(a) == 0 || size == 0) return result;
+  Blas().SYRK(Teuchos::UPPER_TRI, Teuchos::TRANS, size, rows(a), 1.0, a.data(), leading_dimension(a), 0.0,
+              result.data(), size);
+  for (int j = 0; j < size; ++j) {
+    for (int i = 0; i < j; ++i) result(j, i) = result(i, j);
+  }
+  return result;
+}
+
+void sum_over_ranks(const Communicator& communicator, double* values, std::size_t count) {
+  if (communicator.getSize() == 1) return;
+  // Blocks keep the second buffer, and MPI's count, small.
+  constexpr std::size_t block = std::size_t(1) << 22;
+  std::vector<double> sum(std::min(block, count));
+  for (std::size_t first = 0; first < count; first += block) {
+    const int length = static_cast<int>(std::min(block, count - first));
+    Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, length, values + first, sum.data());
+    std::copy_n(sum.data(), length, values + first);
+  }
+}
+
+void broadcast(const Communicator& communicator, double* values, std::size_t count) {
+  if (communicator.getSize() == 1) return;
+  constexpr std::size_t block = std::size_t(1) << 26;
+  for (std::size_t first = 0; first < count; first += block) {
+    Teuchos::broadcast(communicator, 0, static_cast<int>(std::min(block, count - first)), values + first);
+  }
+}
+
+MatrixView row_block(const MatrixView& a, std::size_t first, std::size_t count) {
+  return Kokkos::subview(a, std::make_pair(first, first + count), Kokkos::ALL);
+}
+
+ConstMatrixView row_block(const ConstMatrixView& a, std::size_t first, std::size_t count) {
+  return Kokkos::subview(a, std::make_pair(first, first + count), Kokkos::ALL);
+}
+
+MatrixView leading_columns(const MatrixView& a, std::size_t count) {
+  return Kokkos::subview(a, Kokkos::ALL, std::make_pair(std::size_t(0), count));
+}
+
+ConstMatrixView leading_columns(const ConstMatrixView& a, std::size_t count) {
+  return Kokkos::subview(a, Kokkos::ALL, std::make_pair(std::size_t(0), count));
+}
+
+}  // namespace kiln::dense

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/base/LinearAlgebra.hpp"
+
+/// Dense linear algebra of the reductions on local, column-major views: BLAS and LAPACK calls with the sizes read off the
+/// views. A matrix may be a block of a larger one. Nothing here allocates unless it returns something new.
+namespace kiln::dense {
+
+static_assert(Kokkos::SpaceAccessibility<Kokkos::HostSpace, Device::memory_space>::accessible,
+              "BLAS and LAPACK of the reductions read Kokkos views on the host");
+
+enum class Transpose { no, yes };
+
+/// y = alpha A x + beta y.
+void multiply(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta, const VectorView& y);
+/// y = alpha Aᵀ x + beta y.
+void multiply_transposed(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta,
+                         const VectorView& y);
+/// C = alpha op(A) op(B) + beta C.
+void product(Transpose transpose_a, Transpose transpose_b, double alpha, const ConstMatrixView& a,
+             const ConstMatrixView& b, double beta, const MatrixView& c);
+/// AᵀA, both triangles filled, of this rank's rows.
+MatrixView gram(const ConstMatrixView& a);
+
+/// Sums a contiguous array over all ranks, in place.
+void sum_over_ranks(const Communicator& communicator, double* values, std::size_t count);
+/// Gives every rank what rank 0 holds.
+void broadcast(const Communicator& communicator, double* values, std::size_t count);
+
+/// The block of rows first … first + count − 1.
+MatrixView row_block(const MatrixView& a, std::size_t first, std::size_t count);
+ConstMatrixView row_block(const ConstMatrixView& a, std::size_t first, std::size_t count);
+/// The first `count` columns.
+MatrixView leading_columns(const MatrixView& a, std::size_t count);
+ConstMatrixView leading_columns(const ConstMatrixView& a, std::size_t count);
+
+/// A = U Σ Vᵀ, thin; Σ descending.
+struct Svd {
+  MatrixView left;
+  std::vector<double> values;
+  MatrixView right_transposed;
+};
+Svd svd(const ConstMatrixView& a);
+
+/// Eigenvalues of a symmetric matrix in descending order; its eigenvectors overwrite `a`, column by column. Only the
+/// upper triangle is read.
+std::vector<double> symmetric_eigen(const MatrixView& a);
+
+/// Householder QR of a local matrix, LAPACK's compact form.
+class HouseholderQr {
+ public:
+  /// Factors `a` in place and keeps it.
+  explicit HouseholderQr(MatrixView a);
+  /// R, min(rows, columns) × columns, zero below its diagonal.
+  MatrixView r() const;
+  /// b = Q b for b with as many rows as the factored matrix.
+  void apply_q(const MatrixView& b) const;
+
+ private:
+  MatrixView factors_;
+  std::vector<double> tau_;
+};
+
+/// LU factors of a small square matrix.
+class LuFactors {
+ public:
+  /// Factors `a` in place and keeps it. Returns the reciprocal condition number in the 1-norm, 0 for a singular or
+  /// non-finite matrix; such factors must not be solved with.
+  double factor(const MatrixView& a);
+  /// b = A⁻¹ b. Does not allocate.
+  void solve(const VectorView& b) const;
+
+ private:
+  MatrixView factors_;
+  std::vector<int> pivots_;
+};
+
+}  // namespace kiln::dense

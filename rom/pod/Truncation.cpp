@@ -1,0 +1,72 @@
+#include "rom/pod/Truncation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/base/Error.hpp"
+
+namespace kiln {
+namespace {
+
+constexpr const char* squared = "squared singular values";
+constexpr const char* plain = "singular values";
+
+}  // namespace
+
+PodSettings::PodSettings(const Teuchos::ParameterList& list)
+    : path(list.name()),
+      algorithm(list.get<std::string>("algorithm") == "tsqr" ? Algorithm::tsqr : Algorithm::gram),
+      energy_of(list.get<std::string>("energy_of") == plain ? EnergyOf::singular_values
+                                                            : EnergyOf::squared_singular_values) {
+  if (list.isParameter("rank")) rank = list.get<int>("rank");
+  if (list.isParameter("energy")) energy = list.get<double>("energy");
+}
+
+Specification PodSettings::specification() {
+  Specification s;
+  s.integer("rank", "number of basis vectors; either this or energy").at_least(1).optional();
+  s.real("energy", "fraction of the statistical energy to keep, e.g. 99.999 %").above(0).at_most(1).optional();
+  s.choice("energy_of", "what the energy sums up", {squared, plain}).defaults_to(squared);
+  s.choice("algorithm", "gram: eigenvectors of the snapshots' Gram matrix; tsqr: parallel QR, for small singular values",
+           {"gram", "tsqr"})
+      .defaults_to("gram");
+  s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
+    const bool rank = list.isParameter("rank"), energy = list.isParameter("energy");
+    if (rank && energy) problems.push_back({"rank", "both rank and energy are given", "one of the two", {}});
+    if (!rank && !energy) problems.push_back({"", "neither rank nor energy is given", "one of the two", {}});
+  });
+  return s;
+}
+
+Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings) {
+  const double floor = singular_values.empty() ? 0.0 : settings.resolution() * singular_values.front();
+  const auto end = std::find_if(singular_values.begin(), singular_values.end(),
+                                [floor](double sigma) { return !(sigma > floor) || !(sigma > 0.0); });
+  const int independent = static_cast<int>(end - singular_values.begin());
+  if (independent == 0) {
+    throw InputError(settings.path, fmt::format("all {} snapshots are zero", singular_values.size()),
+                     "snapshots that differ from the reference state");
+  }
+  if (settings.rank && *settings.rank > independent) {
+    throw InputError(settings.path + ".rank",
+                     fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "
+                                 "values above {:.0e} of the largest)",
+                                 *settings.rank, singular_values.size(), independent, settings.resolution()),
+                     fmt::format("a rank of at most {}", independent));
+  }
+  const auto weight = [&settings](double sigma) {
+    return settings.energy_of == PodSettings::EnergyOf::singular_values ? sigma : sigma * sigma;
+  };
+  double total = 0.0;
+  for (int k = 0; k < independent; ++k) total += weight(singular_values[k]);
+  double kept = 0.0;
+  int rank = 0;
+  const auto enough = [&] {
+    return settings.rank ? rank == *settings.rank : kept >= settings.energy.value_or(1.0) * total;
+  };
+  while (rank < independent && !enough()) kept += weight(singular_values[rank++]);
+  return {rank, independent, kept / total};
+}
+
+}  // namespace kiln

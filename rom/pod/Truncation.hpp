@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/registry/Specification.hpp"
+
+namespace kiln {
+
+/// The blocks `reduction.basis` and `reduction.residual_basis`: how a POD is computed and where it is cut off.
+struct PodSettings {
+  enum class Algorithm {
+    gram,  ///< eigenvectors of SᵀS; resolves singular values above 1e-8 of the largest
+    tsqr   ///< QR of S spread over the ranks, then the SVD of R; resolves singular values above 1e-12 of the largest
+  };
+  enum class EnergyOf { squared_singular_values, singular_values };
+
+  std::string path = "basis";  ///< of the block in the input, for messages
+  Algorithm algorithm = Algorithm::gram;
+  EnergyOf energy_of = EnergyOf::squared_singular_values;
+  std::optional<int> rank;
+  std::optional<double> energy;  ///< fraction in (0, 1]
+
+  PodSettings() = default;
+  explicit PodSettings(const Teuchos::ParameterList& list);
+  static Specification specification();
+
+  /// Singular values at or below this fraction of the largest are round-off of the algorithm.
+  double resolution() const { return algorithm == Algorithm::gram ? 1e-8 : 1e-12; }
+};
+
+/// Where a POD is cut off.
+struct Truncation {
+  int rank;         ///< columns kept
+  int independent;  ///< singular values above PodSettings::resolution()
+  double energy;    ///< fraction kept, of the independent ones' Σσ² or Σσ
+};
+
+/// Smallest rank that keeps the energy asked for, or the rank asked for. `singular_values` descend. Throws InputError if
+/// nothing is independent (all snapshots zero) or a rank above `independent` is asked for.
+Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings);
+
+}  // namespace kiln

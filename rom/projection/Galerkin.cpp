@@ -1,0 +1,18 @@
+#include "framework/registry/Registry.hpp"
+#include "rom/projection/FullSize.hpp"
+
+namespace kiln {
+namespace {
+
+class Galerkin : public PetrovGalerkin {
+ public:
+  static Specification specification() { return reduced_specification(); }
+  Galerkin(const Teuchos::ParameterList&, const Context& context)
+      : PetrovGalerkin(full_size_parts(context, std::make_unique<GalerkinTestBasis>()),
+                       NewtonSettings(context.input.sublist("time").sublist("newton"))) {}
+};
+
+KILN_REGISTER(Method, Galerkin, "galerkin", "Galerkin projection on the whole domain: the residual is orthogonal to the basis");
+
+}  // namespace
+}  // namespace kiln

@@ -1,0 +1,21 @@
+#include "rom/projection/TestBasis.hpp"
+
+#include "rom/linear_algebra/Dense.hpp"
+
+namespace kiln {
+
+ConstMatrixView GnatTestBasis::form(ConstMatrixView, ConstMatrixView jacobian_tangent,
+                                    const Communicator& communicator) {
+  const std::size_t size = jacobian_tangent.extent(1);
+  if (test_.extent(1) != size) {
+    reduced_ = MatrixView("kiln::rom::A J Phi", gappy_operator_.extent(0), size);
+    test_ = MatrixView("kiln::rom::test basis", gappy_operator_.extent(1), size);
+  }
+  using dense::Transpose;
+  dense::product(Transpose::no, Transpose::no, 1.0, gappy_operator_, jacobian_tangent, 0.0, reduced_);
+  dense::sum_over_ranks(communicator, reduced_.data(), reduced_.size());
+  dense::product(Transpose::yes, Transpose::no, 1.0, gappy_operator_, reduced_, 0.0, test_);
+  return test_;
+}
+
+}  // namespace kiln

@@ -1,0 +1,29 @@
+#include "rom/training/SnapshotObserver.hpp"
+
+#include <Tpetra_Map.hpp>
+
+#include "framework/report/RunReport.hpp"
+
+namespace kiln {
+
+SnapshotObserver::SnapshotObserver(Method& method, Snapshots& snapshots, int every)
+    : method_(method),
+      snapshots_(snapshots),
+      every_(every),
+      reference_("kiln::rom::reference", snapshots.rows()),
+      state_("kiln::rom::state", snapshots.rows()) {
+  VectorView x("kiln::rom::unknown", method.coordinates()->getMyGlobalIndices().extent(0));
+  method.initial(x);
+  method.state(x, reference_);
+}
+
+void SnapshotObserver::observe(const Moment& moment) {
+  if (moment.step == 0 || (moment.step % every_ != 0 && moment.step != moment.last_step)) return;
+  method_.state(moment.x, state_);
+  for (std::size_t i = 0; i < state_.extent(0); ++i) state_(i) -= reference_(i);
+  snapshots_.append(state_);
+}
+
+void SnapshotObserver::finish(RunReport& report) { report.section("training")["state_snapshots"] = snapshots_.count(); }
+
+}  // namespace kiln

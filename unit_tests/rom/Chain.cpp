@@ -1,0 +1,242 @@
+#include "Chain.hpp"
+
+#include <Teuchos_Array.hpp>
+#include <Teuchos_DefaultMpiComm.hpp>
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "framework/files/Hdf5.hpp"
+
+namespace kiln::test {
+namespace {
+
+constexpr int reach = 4;
+constexpr int offsets[reach] = {-1, 1, -2, 2};
+constexpr double weights[reach] = {1.0, 1.0, 0.25, 0.25};
+
+}  // namespace
+
+Specification Chain::specification() {
+  Specification s;
+  s.integer("count", "particles").at_least(1);
+  s.integer("components", "1 or 2").defaults_to(1);
+  s.real("diffusion", "of both fields").defaults_to(30.0);
+  s.real("reaction", "rate of the cubic sink").defaults_to(2.0);
+  s.real("power", "of the source").defaults_to(40.0);
+  s.real("velocity", "of the source").defaults_to(5.0);
+  return s;
+}
+
+void Chain::read(const Teuchos::ParameterList& list) {
+  count_ = list.get<int>("count");
+  components_ = list.get<int>("components");
+  diffusion_ = list.get<double>("diffusion");
+  reaction_ = list.get<double>("reaction");
+  power_ = list.get<double>("power");
+  velocity_ = list.get<double>("velocity");
+  parameters_.add("power", "W", &power_);
+  parameters_.add("velocity", "m/s", &velocity_);
+}
+
+Chain::Chain(const Teuchos::ParameterList& list, const Context& context) {
+  read(list);
+  const Map whole(count_, 0, context.communicator);
+  std::vector<GlobalIndex> mine;
+  for (GlobalIndex id = whole.getMinGlobalIndex(); id <= whole.getMaxGlobalIndex(); ++id) mine.push_back(id);
+  build(mine, context.communicator);
+}
+
+Chain::Chain(const Teuchos::ParameterList& list, const Context& context, const hdf5::Group& group) {
+  read(list);
+  const hdf5::Array<long long> rows = group.integers("rows", {0});
+  all_rows_.assign(rows.values.begin(), rows.values.end());
+  const std::size_t rank = context.communicator->getRank(), ranks = context.communicator->getSize();
+  build({all_rows_.begin() + all_rows_.size() * rank / ranks, all_rows_.begin() + all_rows_.size() * (rank + 1) / ranks},
+        context.communicator);
+}
+
+Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows)
+    : count_(full.count_),
+      components_(full.components_),
+      diffusion_(full.diffusion_),
+      reaction_(full.reaction_),
+      power_(full.power_),
+      velocity_(full.velocity_),
+      all_rows_(rows) {
+  parameters_.add("power", "W", &power_);
+  parameters_.add("velocity", "m/s", &velocity_);
+  std::sort(all_rows_.begin(), all_rows_.end());
+  std::vector<GlobalIndex> mine;
+  for (const GlobalIndex id : all_rows_) {
+    if (full.rows_->isNodeGlobalElement(id)) mine.push_back(id);
+  }
+  build(mine, full.rows_->getComm());
+}
+
+void Chain::build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const Communicator>& communicator) {
+  std::vector<GlobalIndex> sources = mine;
+  for (const GlobalIndex id : mine) {
+    for (const int offset : offsets) {
+      const GlobalIndex other = id + offset;
+      if (other < 0 || other >= count_) continue;
+      if (std::find(sources.begin(), sources.end(), other) == sources.end()) sources.push_back(other);
+    }
+  }
+  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
+  rows_ = Teuchos::rcp(new Map(unknown, Teuchos::arrayViewFromVector(mine), 0, communicator));
+  sources_ = Teuchos::rcp(new Map(unknown, Teuchos::arrayViewFromVector(sources), 0, communicator));
+  for (const GlobalIndex id : mine) {
+    for (const int offset : offsets) {
+      const GlobalIndex other = id + offset;
+      neighbours_.push_back(other < 0 || other >= count_ ? -1 : sources_->getLocalElement(other));
+    }
+  }
+  positions_ = PositionView("test::positions", sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) positions_(i, 0) = position(sources[i]);
+}
+
+std::vector<Field> Chain::fields() const {
+  std::vector<Field> result{{"temperature", "K"}, {"second", "1"}};
+  result.resize(components_);
+  return result;
+}
+
+void Chain::initial_state(VectorView u) const {
+  for (std::size_t i = 0; i < positions_.extent(0); ++i) {
+    u(i * components_) = 0.5 + 0.1 * std::sin(3.0 * positions_(i, 0));
+    if (components_ == 2) u(i * components_ + 1) = 0.2;
+  }
+}
+
+void Chain::rate(ConstVectorView u, double time, VectorView f) const {
+  const std::size_t rows = f.extent(0) / components_;
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (int c = 0; c < components_; ++c) {
+      double sum = 0.0;
+      for (int k = 0; k < reach; ++k) {
+        const LocalIndex j = neighbours_[i * reach + k];
+        if (j >= 0) sum += weights[k] * (u(j * components_ + c) - u(i * components_ + c));
+      }
+      f(i * components_ + c) = (c == 0 ? 1.0 : 0.5) * diffusion_ * sum;
+    }
+    const double x = positions_(i, 0), own = u(i * components_);
+    const double distance = (x - velocity_ * time) / 0.1;
+    f(i * components_) += -reaction_ * own * own * own + power_ * std::exp(-distance * distance);
+    if (components_ == 2) {
+      f(i * components_) += 0.3 * u(i * components_ + 1);
+      f(i * components_ + 1) -= 0.5 * own;
+    }
+  }
+}
+
+void Chain::rate_jacobian_diagonal(ConstVectorView u, double, VectorView diagonal) const {
+  const std::size_t rows = diagonal.extent(0) / components_;
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (int c = 0; c < components_; ++c) {
+      double sum = 0.0;
+      for (int k = 0; k < reach; ++k) {
+        if (neighbours_[i * reach + k] >= 0) sum -= weights[k];
+      }
+      diagonal(i * components_ + c) = (c == 0 ? 1.0 : 0.5) * diffusion_ * sum;
+    }
+    const double own = u(i * components_);
+    diagonal(i * components_) -= 3.0 * reaction_ * own * own;
+  }
+}
+
+void Chain::apply_rate_jacobian(ConstVectorView u, double, ConstMatrixView v, MatrixView product) const {
+  const std::size_t rows = product.extent(0) / components_;
+  for (std::size_t column = 0; column < v.extent(1); ++column) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      for (int c = 0; c < components_; ++c) {
+        double sum = 0.0;
+        for (int k = 0; k < reach; ++k) {
+          const LocalIndex j = neighbours_[i * reach + k];
+          if (j >= 0) sum += weights[k] * (v(j * components_ + c, column) - v(i * components_ + c, column));
+        }
+        product(i * components_ + c, column) = (c == 0 ? 1.0 : 0.5) * diffusion_ * sum;
+      }
+      const double own = u(i * components_);
+      product(i * components_, column) -= 3.0 * reaction_ * own * own * v(i * components_, column);
+      if (components_ == 2) {
+        product(i * components_, column) += 0.3 * v(i * components_ + 1, column);
+        product(i * components_ + 1, column) -= 0.5 * v(i * components_, column);
+      }
+    }
+  }
+}
+
+std::unique_ptr<Model> Chain::sampled(const std::vector<GlobalIndex>& rows) const {
+  return std::unique_ptr<Model>(new Chain(*this, rows));
+}
+
+void Chain::save_sample(hdf5::Group& group) const {
+  group.write("rows", std::vector<long long>(all_rows_.begin(), all_rows_.end()));
+}
+
+KILN_REGISTER(Model, Chain, "test chain", "diffusion, reaction and a moving source on a line; for tests");
+
+Teuchos::ParameterList input_of(const Case& values) {
+  Teuchos::ParameterList input("");
+  input.set("title", std::string("test"));
+  Teuchos::ParameterList& model = input.sublist("model");
+  model.setName("model");
+  model.set("type", std::string("test chain"));
+  model.set("count", values.count);
+  model.set("components", values.components);
+  model.set("diffusion", 30.0);
+  model.set("reaction", values.reaction);
+  model.set("power", values.power);
+  model.set("velocity", 5.0);
+  Teuchos::ParameterList& time = input.sublist("time");
+  time.setName("time");
+  time.set("step", values.step);
+  time.set("end", values.step * values.steps);
+  time.sublist("scheme").setName("time.scheme");
+  time.sublist("scheme").set("type", values.scheme);
+  Teuchos::ParameterList& newton = time.sublist("newton");
+  newton.setName("time.newton");
+  newton.set("tolerance", values.tolerance);
+  newton.set("iterations", values.iterations);
+  newton.set("jacobian", values.jacobian);
+  newton.set("refresh", values.refresh);
+  newton.set("line_search", false);
+  Teuchos::ParameterList& solver = newton.sublist("linear_solver");
+  solver.setName("time.newton.linear_solver");
+  solver.set("type", std::string("gmres"));
+  solver.set("tolerance", 1e-12);
+  solver.set("iterations", 200);
+  solver.set("preconditioner", std::string("none"));
+  input.sublist("method").setName("method");
+  input.sublist("method").set("type", values.method);
+  Teuchos::ParameterList& reduction = input.sublist("reduction");
+  reduction.setName("reduction");
+  reduction.set("type", std::string("procedure ii"));
+  for (const char* name : {"basis", "residual_basis"}) {
+    Teuchos::ParameterList& basis = reduction.sublist(name);
+    basis.setName(std::string("reduction.") + name);
+    basis.set("rank", std::string(name) == "basis" ? values.basis_rank : values.residual_rank);
+    basis.set("energy_of", std::string("squared singular values"));
+    basis.set("algorithm", values.algorithm);
+  }
+  Teuchos::ParameterList& sampling = reduction.sublist("sampling");
+  sampling.setName("reduction.sampling");
+  sampling.set("type", std::string("greedy"));
+  sampling.set("samples", values.samples);
+  reduction.sublist("snapshots").set("every", 1);
+  Teuchos::ParameterList& point = reduction.sublist("queries").sublist("0");
+  point.set("position", Teuchos::Array<double>{1.0, 0.0, 0.0});
+  input.sublist("output").set("directory", values.folder);
+  Teuchos::ParameterList& probe = input.sublist("output").sublist("probes").sublist("points").sublist("0");
+  probe.set("name", std::string("middle"));
+  probe.set("position", Teuchos::Array<double>{0.5, 0.0, 0.0});
+  return input;
+}
+
+Teuchos::RCP<const Communicator> world() { return Tpetra::getDefaultComm(); }
+
+Teuchos::RCP<const Communicator> self() { return Teuchos::rcp(new Teuchos::MpiComm<int>(MPI_COMM_SELF)); }
+
+}  // namespace kiln::test
