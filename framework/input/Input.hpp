@@ -7,16 +7,10 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/LinearAlgebra.hpp"
+#include "framework/input/Location.hpp"
 #include "framework/registry/Specification.hpp"
 
 namespace kiln {
-
-/// A place in an input file, 1-based; line 0: not in the file (an override or a default).
-struct Location {
-  std::string file;
-  int line = 0;
-  int column = 0;
-};
 
 /// A YAML file checked against a specification: every key known, every value of its type and in its range, defaults
 /// filled in. Sublists carry their dotted path as their name ("model.heat_source"), so that a component can say where a

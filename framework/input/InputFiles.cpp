@@ -1,0 +1,93 @@
+#include "framework/input/InputFiles.hpp"
+
+#include <fmt/format.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace kiln {
+namespace {
+
+std::string why_unreadable(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) return "there is no such file";
+  if (status.type() == std::filesystem::file_type::directory) return "this is a folder";
+  errno = 0;
+  if (!std::ifstream(path)) return fmt::format("the file cannot be opened: {}", std::strerror(errno));
+  return {};
+}
+
+InputFiles::Contents contents(const std::string& path) {
+  std::string trouble = why_unreadable(path);
+  if (!trouble.empty()) return {{}, std::move(trouble)};
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(InputFiles::longest + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) return {{}, "the file cannot be read to its end"};
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > InputFiles::longest)
+    return {{}, fmt::format("the file is longer than {} MiB", InputFiles::longest >> 20)};
+  return {std::move(text), {}};
+}
+
+[[noreturn]] void throw_not_received(const std::string& path) {
+  throw std::runtime_error(fmt::format("{}: rank 0 stopped before it read this file", path));
+}
+
+}  // namespace
+
+InputFiles::InputFiles() : working_folder_(std::filesystem::current_path().string()) {}
+
+InputFiles::InputFiles(const std::string& message) : received_(true) {
+  // CBOR, since a file may hold any bytes.
+  const nlohmann::json answers = nlohmann::json::from_cbor(message);
+  working_folder_ = answers.at("working folder");
+  for (const auto& [path, answer] : answers.at("contents").items()) {
+    contents_[path] = {answer.at(0), answer.at(1)};
+  }
+  troubles_ = answers.at("troubles").get<std::map<std::string, std::string>>();
+}
+
+void InputFiles::send(const Teuchos::Comm<int>& communicator) const {
+  nlohmann::json answers = {
+      {"working folder", working_folder_}, {"contents", nlohmann::json::object()}, {"troubles", troubles_}};
+  for (const auto& [path, file] : contents_) answers["contents"][path] = {file.text, file.trouble};
+  std::string message;
+  nlohmann::json::to_cbor(answers, message);
+  auto size = static_cast<int>(message.size());
+  Teuchos::broadcast(communicator, 0, Teuchos::outArg(size));
+  Teuchos::broadcast(communicator, 0, size, message.data());
+}
+
+InputFiles InputFiles::receive(const Teuchos::Comm<int>& communicator) {
+  int size = 0;
+  Teuchos::broadcast(communicator, 0, Teuchos::outArg(size));
+  std::string message(static_cast<std::size_t>(size), '\0');
+  Teuchos::broadcast(communicator, 0, size, message.data());
+  return InputFiles(message);
+}
+
+std::string InputFiles::absolute(const std::filesystem::path& path) const {
+  return (std::filesystem::path(working_folder_) / path).lexically_normal().string();
+}
+
+const InputFiles::Contents& InputFiles::read(const std::string& path) {
+  const auto known = contents_.find(path);
+  if (known != contents_.end()) return known->second;
+  if (received_) throw_not_received(path);
+  return contents_[path] = contents(path);
+}
+
+const std::string& InputFiles::trouble(const std::string& path) {
+  const auto known = troubles_.find(path);
+  if (known != troubles_.end()) return known->second;
+  if (received_) throw_not_received(path);
+  return troubles_[path] = why_unreadable(path);
+}
+
+}  // namespace kiln

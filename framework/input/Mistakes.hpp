@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/base/Error.hpp"
+#include "framework/input/Location.hpp"
+
+namespace kiln {
+
+/// The mistakes found in an input so far, each with its place.
+class Mistakes {
+ public:
+  /// `file` is read next: its mistakes are told after those of the files before it. Places that belong to no such
+  /// file (overrides) come last.
+  void begin_file(const std::string& file) { files_.push_back(file); }
+  void add(const Location& location, Problem problem);
+  std::size_t count() const { return mistakes_.size(); }
+  /// All mistakes by their position, "file:line:column: " before each.
+  InputError error() const;
+
+ private:
+  struct Mistake {
+    Location location;
+    Problem problem;
+  };
+  std::vector<std::string> files_;
+  std::vector<Mistake> mistakes_;
+};
+
+/// `text` for a message: control characters escaped, cut after 60 characters.
+std::string shown(const std::string& text);
+/// The same in single quotes.
+std::string in_quotes(const std::string& text);
+
+}  // namespace kiln

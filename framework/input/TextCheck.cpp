@@ -1,0 +1,70 @@
+#include "framework/input/TextCheck.hpp"
+
+#include <fmt/format.h>
+
+namespace kiln {
+namespace {
+
+/// Length of the UTF-8 character at `i`; 0: not one (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+std::size_t character_length(const std::string& text, std::size_t i) {
+  const auto byte = [&](std::size_t k) {
+    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : static_cast<unsigned char>(0);
+  };
+  const auto continues = [&](std::size_t k) { return (byte(k) & 0xc0) == 0x80; };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return continues(1) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    if (!continues(1) || !continues(2)) return 0;
+    if (first == 0xe0 && byte(1) < 0xa0) return 0;
+    if (first == 0xed && byte(1) > 0x9f) return 0;
+    return 3;
+  }
+  if (first >= 0xf0 && first <= 0xf4) {
+    if (!continues(1) || !continues(2) || !continues(3)) return 0;
+    if (first == 0xf0 && byte(1) < 0x90) return 0;
+    if (first == 0xf4 && byte(1) > 0x8f) return 0;
+    return 4;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool check_text(const std::string& text, const Location& origin, Mistakes& mistakes) {
+  int line = 1;
+  std::size_t line_start = 0;
+  bool in_indentation = true;
+  const auto refuse = [&](std::size_t i, std::string found, std::string expected) {
+    Location location = origin;
+    if (origin.line != 0) location = {origin.file, line, static_cast<int>(i - line_start) + 1};
+    mistakes.add(location, {{}, std::move(found), std::move(expected), {}});
+    return false;
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = character_length(text, i);
+    if (length == 0) return refuse(i, fmt::format("byte 0x{:02x} is not UTF-8", byte), "YAML text in UTF-8");
+    if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7f) {
+      return refuse(i, fmt::format("control character 0x{:02x}", byte), "YAML text in UTF-8");
+    }
+    if (byte == '%' && i == line_start) {
+      return refuse(i, "a line that begins with '%'", "no directives; a text that begins with '%' stands in quotes");
+    }
+    if (byte == '\n') {
+      ++line;
+      line_start = i + 1;
+      in_indentation = true;
+    } else if (byte == '\t' && in_indentation) {
+      const std::size_t content = text.find_first_not_of(" \t\r", i);
+      const bool blank = content == std::string::npos || text[content] == '\n' || text[content] == '#';
+      if (!blank) return refuse(i, "a tab in the indentation", "spaces");
+    } else if (byte != ' ') {
+      in_indentation = false;
+    }
+    i += length;
+  }
+  return true;
+}
+
+}  // namespace kiln
