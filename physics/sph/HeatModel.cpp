@@ -61,8 +61,7 @@ Specification HeatModel::specification() {
   specification.real("smoothing_length", "h in multiples of the particles' (widest) spacing").above(0).defaults_to(1.5);
   specification.component<Kernel>("kernel", "smoothing kernel, support 2h").defaults_to("cubic spline");
   specification.component<Material>("material", "conductivity, specific heat and density over temperature");
-  specification.section("table", "the table the material's properties are interpolated in", std::move(table))
-      .optional();
+  specification.section("table", "the table the material's properties are interpolated in", std::move(table));
   specification.real("initial_temperature", "temperature at t = 0; its density fixes the masses").unit("K").above(0);
   specification.component<HeatSource>("heat_source", "heat flux into the heated surface");
   specification

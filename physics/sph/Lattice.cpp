@@ -27,7 +27,7 @@ class Lattice final : public Particles {
         .defaults_to("nodes");
     specification.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
       const auto count = list.get<Teuchos::Array<int>>("count");
-      if (list.get<std::string>("placement", "nodes") != "nodes") return;
+      if (list.isParameter("placement") && list.get<std::string>("placement") != "nodes") return;
       for (int axis = 0; axis < 3; ++axis) {
         if (count[axis] < 2) {
           problems.push_back({"count", fmt::format("{} node along {}", count[axis], axis_name[axis]),
