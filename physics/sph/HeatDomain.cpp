@@ -1,0 +1,179 @@
+#include "physics/sph/HeatDomain.hpp"
+
+#include <fmt/format.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "framework/base/Error.hpp"
+#include "physics/sph/Distribution.hpp"
+#include "physics/sph/PairWeights.hpp"
+
+namespace kiln {
+namespace {
+
+std::string text(const Point& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p[0], p[1], p[2]); }
+
+void check_positions(const ParticleCloud& cloud, const std::string& path) {
+  for (std::size_t id = 0; id < cloud.positions.size(); ++id) {
+    const Point& p = cloud.positions[id];
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
+      throw InputError(path, fmt::format("particle {} lies at {}", id, text(p)), "finite coordinates");
+    }
+  }
+  if (cloud.positions.empty()) throw InputError(path, "there is no particle", "at least 2");
+}
+
+/// Smallest value over all ranks.
+GlobalIndex lowest(GlobalIndex value, const Communicator& communicator) {
+  GlobalIndex result = value;
+  Teuchos::reduceAll(communicator, Teuchos::REDUCE_MIN, 1, &value, &result);
+  return result;
+}
+
+/// The particles a rank can need, ascending by id: its own and those around them.
+struct Candidates {
+  std::vector<GlobalIndex> ids;
+  std::vector<LocalIndex> own;  ///< indices into ids
+};
+
+Candidates candidates(const std::vector<Point>& positions, const std::vector<GlobalIndex>& own, double support) {
+  Candidates result;
+  if (own.empty()) return result;
+  Box box{positions[own.front()], positions[own.front()]};
+  for (const GlobalIndex id : own) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = std::min(box.lower[axis], positions[id][axis]);
+      box.upper[axis] = std::max(box.upper[axis], positions[id][axis]);
+    }
+  }
+  auto next_own = own.begin();
+  for (std::size_t id = 0; id < positions.size(); ++id) {
+    bool near = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      near =
+          near && positions[id][axis] >= box.lower[axis] - support && positions[id][axis] <= box.upper[axis] + support;
+    }
+    if (!near) continue;
+    if (next_own != own.end() && *next_own == static_cast<GlobalIndex>(id)) {
+      result.own.push_back(static_cast<LocalIndex>(result.ids.size()));
+      ++next_own;
+    }
+    result.ids.push_back(static_cast<GlobalIndex>(id));
+  }
+  return result;
+}
+
+IndexView index_view(const std::vector<LocalIndex>& values) {
+  IndexView view("indices", values.size());
+  const auto host = Kokkos::create_mirror_view(view);
+  std::copy(values.begin(), values.end(), host.data());
+  Kokkos::deep_copy(view, host);
+  return view;
+}
+
+VectorView vector_view(const std::vector<double>& values, const std::string& label) {
+  VectorView view(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), values.size());
+  const auto host = Kokkos::create_mirror_view(view);
+  std::copy(values.begin(), values.end(), host.data());
+  Kokkos::deep_copy(view, host);
+  return view;
+}
+
+void check_pairs(const ParticleCloud& cloud, const Candidates& around, const ConstPositionView& positions,
+                 const IndexView& targets, const NeighbourList& pairs, const PairSettings& settings,
+                 const Communicator& communicator) {
+  constexpr GlobalIndex none = std::numeric_limits<GlobalIndex>::max();
+  const std::string path = settings.path + ".particles";
+  const auto coincident = coincident_pair(positions, targets, pairs, settings.support);
+  const GlobalIndex mine = coincident ? around.ids[around.own[coincident->first]] : none;
+  const GlobalIndex first = lowest(mine, communicator);
+  if (first != none) {
+    const GlobalIndex second = lowest(mine == first ? around.ids[coincident->second] : none, communicator);
+    throw InputError(path,
+                     fmt::format("particles {} and {} coincide at {}", first, second, text(cloud.positions[first])),
+                     "particles at different places");
+  }
+  const auto offsets = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pairs.offsets);
+  GlobalIndex isolated = none;
+  for (std::size_t t = 0; t < around.own.size() && isolated == none; ++t) {
+    if (offsets(t + 1) == offsets(t)) isolated = around.ids[around.own[t]];
+  }
+  isolated = lowest(isolated, communicator);
+  if (isolated != none) {
+    throw InputError(
+        path, fmt::format("particle {} at {} has no neighbour", isolated, text(cloud.positions[isolated])),
+        fmt::format("at least one particle closer than 2h = {:.6g} m; is the spacing right?", settings.support));
+  }
+}
+
+}  // namespace
+
+Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids,
+                               const Teuchos::RCP<const Communicator>& communicator) {
+  const Teuchos::ArrayView<const GlobalIndex> view(ids.data(), static_cast<Teuchos::Ordinal>(ids.size()));
+  return Teuchos::rcp(
+      new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), view, GlobalIndex{0}, communicator));
+}
+
+HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings,
+                        const Teuchos::RCP<const Communicator>& communicator) {
+  check_positions(cloud, settings.path + ".particles");
+  if (settings.mirrored && !cloud.faces) {
+    throw InputError(settings.path + ".boundary", "mirrored boundaries need cells that fill a box",
+                     "particles: {type: lattice, placement: cells, …}, or boundary: as printed");
+  }
+  const int ranks = communicator->getSize();
+  const std::vector<double> work = ranks == 1 ? std::vector<double>(cloud.positions.size(), 1.0)
+                                              : neighbour_counts(cloud.positions, settings.support, *communicator);
+  const std::vector<GlobalIndex> own = coordinate_bisection(cloud.positions, work, ranks, communicator->getRank());
+  const Candidates around = candidates(cloud.positions, own, settings.support);
+  std::vector<Point> places;
+  places.reserve(around.ids.size());
+  for (const GlobalIndex id : around.ids) places.push_back(cloud.positions[id]);
+  const ConstPositionView candidate_positions = position_view(places);
+  const IndexView targets = index_view(around.own);
+  NeighbourList pairs = find_neighbours(candidate_positions, targets, settings.support);
+  check_pairs(cloud, around, candidate_positions, targets, pairs, settings, *communicator);
+
+  HeatDomain domain;
+  domain.weights = pair_weights(pairs, candidate_positions, targets, settings.kernel, settings.support,
+                                settings.mirrored ? cloud.faces : std::nullopt);
+
+  // From candidates to sources: own particles first, then those of the others that a pair refers to.
+  constexpr LocalIndex unused = -1;
+  std::vector<LocalIndex> local(around.ids.size(), unused);
+  std::vector<GlobalIndex> sources(own);
+  for (std::size_t t = 0; t < around.own.size(); ++t) local[around.own[t]] = static_cast<LocalIndex>(t);
+  const auto neighbours = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pairs.neighbours);
+  std::vector<char> needed(around.ids.size(), 0);
+  for (std::size_t pair = 0; pair < neighbours.extent(0); ++pair) needed[neighbours(pair)] = 1;
+  for (std::size_t c = 0; c < around.ids.size(); ++c) {
+    if (needed[c] == 0 || local[c] != unused) continue;
+    local[c] = static_cast<LocalIndex>(sources.size());
+    sources.push_back(around.ids[c]);
+  }
+  for (std::size_t pair = 0; pair < neighbours.extent(0); ++pair) neighbours(pair) = local[neighbours(pair)];
+  Kokkos::deep_copy(pairs.neighbours, neighbours);
+  domain.pairs = pairs;
+
+  std::vector<Point> source_places;
+  std::vector<double> masses;
+  for (const GlobalIndex id : sources) {
+    source_places.push_back(cloud.positions[id]);
+    masses.push_back(settings.density * cloud.volumes[id]);
+  }
+  std::vector<double> areas;
+  for (const GlobalIndex id : own) areas.push_back(cloud.heated_areas[id]);
+  domain.rows = map_of(own, communicator);
+  domain.sources = map_of(sources, communicator);
+  domain.positions = position_view(source_places);
+  domain.masses = vector_view(masses, "masses");
+  domain.areas = vector_view(areas, "heated areas");
+  return domain;
+}
+
+}  // namespace kiln

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <vector>
+
+#include "physics/sph/Kernel.hpp"
+#include "physics/sph/MaterialTable.hpp"
+#include "physics/sph/Neighbours.hpp"
+#include "physics/sph/Particles.hpp"
+
+namespace kiln {
+
+namespace hdf5 {
+class Group;
+}
+
+/// What the heat model keeps of its particles on this rank: rows, their sources, and the pairs between them. Neighbours
+/// of a row are ordered by global id, so that sums do not depend on the number of ranks.
+struct HeatDomain {
+  Teuchos::RCP<const Map> rows;     ///< ascending by global id
+  Teuchos::RCP<const Map> sources;  ///< the rows, then the others, each ascending
+  PositionView positions;           ///< of the sources
+  VectorView masses;                ///< m_i in kg of the sources
+  VectorView areas;                 ///< A_i in m² of the rows
+  NeighbourList pairs;              ///< of the rows, as local indices into the sources
+  VectorView weights;               ///< of the pairs, (dW/dr)/r in 1/m⁵
+};
+
+/// How the pairs of a whole part are made.
+struct PairSettings {
+  const Kernel& kernel;
+  double support;  ///< 2h in m
+  bool mirrored;
+  double density;    ///< ρ(u0) in kg/m³, which fixes the masses
+  std::string path;  ///< of the model in the input, for errors
+};
+
+/// Distributes a cloud over the ranks and finds the pairs. Throws InputError for positions that are not finite,
+/// particles that coincide or have no neighbour, and mirroring without faces. Collective.
+HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings,
+                        const Teuchos::RCP<const Communicator>& communicator);
+
+/// The part of a domain that the given rows need; each row stays on its rank. Throws InputError for a row that the
+/// domain does not have or that is listed twice. Collective.
+HeatDomain sampled_domain(const HeatDomain& domain, const std::vector<GlobalIndex>& rows);
+
+/// Writes a domain in an order that does not depend on the number of ranks. Collective.
+void save_domain(const HeatDomain& domain, hdf5::Group& group);
+
+/// Reads a saved domain; ranks get contiguous blocks of rows with like numbers of pairs. Throws FileError for data that
+/// do not fit together. Collective.
+HeatDomain restored_domain(const hdf5::Group& group, const Teuchos::RCP<const Communicator>& communicator);
+
+/// A map of the given local ids.
+Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids,
+                               const Teuchos::RCP<const Communicator>& communicator);
+
+}  // namespace kiln

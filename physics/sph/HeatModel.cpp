@@ -1,0 +1,163 @@
+#include "physics/sph/HeatModel.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "framework/registry/Registry.hpp"
+#include "physics/sph/Kernel.hpp"
+#include "physics/sph/Material.hpp"
+#include "physics/sph/Particles.hpp"
+
+namespace kiln {
+namespace {
+
+constexpr double default_from = 200.0;
+constexpr double default_to = 6000.0;
+constexpr double default_step = 1.0;
+
+MaterialTable material_table(const Teuchos::ParameterList& list, const Model::Context& context) {
+  const Teuchos::ParameterList& block = list.sublist("material");
+  const auto material = Registry<Material>::create(block, {context.communicator});
+  Teuchos::ParameterList range = list.isSublist("table") ? list.sublist("table") : Teuchos::ParameterList();
+  return {*material, range.get("from", default_from), range.get("to", default_to), range.get("step", default_step),
+          block.name()};
+}
+
+double initial_temperature(const Teuchos::ParameterList& list) {
+  const auto temperature = list.get<double>("initial_temperature");
+  if (!std::isfinite(temperature)) {
+    throw InputError(list.name() + ".initial_temperature", fmt::format("is {}", temperature), "a temperature in K");
+  }
+  return temperature;
+}
+
+HeatDomain domain_of(const Teuchos::ParameterList& list, const Model::Context& context, const MaterialTable& table) {
+  const ParticleCloud cloud = Registry<Particles>::create(list.sublist("particles"), {context.communicator})->cloud();
+  const double smoothing_length = list.get<double>("smoothing_length") * cloud.spacing;
+  const auto kernel = Registry<Kernel>::create(list.sublist("kernel"), {smoothing_length});
+  const bool mirrored = list.isParameter("boundary") && list.get<std::string>("boundary") == "mirrored";
+  const double density = table.at(initial_temperature(list)).density;
+  return whole_domain(cloud, {*kernel, 2.0 * smoothing_length, mirrored, density, list.name()}, context.communicator);
+}
+
+}  // namespace
+
+Specification HeatModel::specification() {
+  Specification table;
+  table.real("from", "lowest temperature; below it, its properties").unit("K").at_least(0).defaults_to(default_from);
+  table.real("to", "highest temperature; above it, its properties").unit("K").above(0).defaults_to(default_to);
+  table.real("step", "step of the table").unit("K").above(0).defaults_to(default_step);
+  table.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
+    if (list.get<double>("from") >= list.get<double>("to")) {
+      problems.push_back(
+          {"to", fmt::format("{} K is not above from = {} K", list.get<double>("to"), list.get<double>("from")),
+           "a rising range", ""});
+    }
+  });
+
+  Specification specification;
+  specification.component<Particles>("particles", "where the particles are");
+  specification.real("smoothing_length", "h in multiples of the particles' (widest) spacing").above(0).defaults_to(1.5);
+  specification.component<Kernel>("kernel", "smoothing kernel, support 2h").defaults_to("cubic spline");
+  specification.component<Material>("material", "conductivity, specific heat and density over temperature");
+  specification.section("table", "the table the material's properties are interpolated in", std::move(table));
+  specification.real("initial_temperature", "temperature at t = 0; its density fixes the masses").unit("K").above(0);
+  specification.component<HeatSource>("heat_source", "heat flux into the heated surface");
+  specification
+      .choice(
+          "boundary",
+          "as printed: particles beyond the faces are missing; mirrored: insulated ghosts there, for cells that fill "
+          "a box",
+          {"as printed", "mirrored"})
+      .defaults_to("as printed");
+  return specification;
+}
+
+HeatModel::HeatModel(const Teuchos::ParameterList& list, const MaterialTable& table, HeatDomain domain)
+    : list_(list),
+      table_(table),
+      domain_(std::move(domain)),
+      initial_temperature_(initial_temperature(list)),
+      heat_source_(Registry<HeatSource>::create(list.sublist("heat_source"), {})),
+      absorbed_("absorbed power", domain_.areas.extent(0)),
+      states_("thermal states", domain_.masses.extent(0)) {
+  parameters_.add("heat_source", heat_source_->parameters());
+  const auto areas = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain_.areas);
+  const auto places = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain_.positions);
+  std::vector<LocalIndex> heated;
+  std::vector<Point> heated_places;
+  for (LocalIndex row = 0; row < row_count(); ++row) {
+    if (areas(row) == 0.0) continue;
+    heated.push_back(row);
+    heated_places.push_back({places(row, 0), places(row, 1), places(row, 2)});
+  }
+  heated_ = IndexView("heated rows", heated.size());
+  const auto host = Kokkos::create_mirror_view(heated_);
+  std::copy(heated.begin(), heated.end(), host.data());
+  Kokkos::deep_copy(heated_, host);
+  heated_positions_ = position_view(heated_places);
+  heated_flux_ = VectorView("heat flux", heated.size());
+}
+
+HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context)
+    : HeatModel(list, context, material_table(list, context)) {}
+
+HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context, const MaterialTable& table)
+    : HeatModel(list, table, domain_of(list, context, table)) {}
+
+void HeatModel::check(const char* method, std::size_t u, std::size_t f) const {
+  if (u == domain_.masses.extent(0) && f == domain_.areas.extent(0)) return;
+  throw std::invalid_argument(fmt::format("HeatModel::{}: arrays of {} and {} values; expected {} sources and {} rows",
+                                          method, u, f, domain_.masses.extent(0), domain_.areas.extent(0)));
+}
+
+void HeatModel::initial_state(VectorView u) const {
+  check("initial_state", u.extent(0), domain_.areas.extent(0));
+  Kokkos::deep_copy(ExecutionSpace(), u, initial_temperature_);
+}
+
+void HeatModel::update_states(ConstVectorView u) const {
+  const auto states = states_;
+  const auto masses = domain_.masses;
+  const MaterialTable table = table_;
+  Kokkos::parallel_for(
+      "kiln::sph::thermal states", RangePolicy(0, source_count()),
+      KOKKOS_LAMBDA(LocalIndex j) { states(j) = thermal_state(table, u(j), masses(j)); });
+}
+
+void HeatModel::update_absorbed(double time) const {
+  const auto number = static_cast<LocalIndex>(heated_.extent(0));
+  if (number == 0) return;
+  heat_source_->flux(time, heated_positions_, heated_flux_);
+  const auto absorbed = absorbed_;
+  const auto heated = heated_;
+  const auto flux = heated_flux_;
+  const auto areas = domain_.areas;
+  Kokkos::parallel_for(
+      "kiln::sph::absorbed power", RangePolicy(0, number),
+      KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
+}
+
+void HeatModel::rate(ConstVectorView u, double time, VectorView f) const {
+  check("rate", u.extent(0), f.extent(0));
+  update_states(u);
+  update_absorbed(time);
+  const auto states = states_;
+  const auto offsets = domain_.pairs.offsets;
+  const auto neighbours = domain_.pairs.neighbours;
+  const auto weights = domain_.weights;
+  const auto masses = domain_.masses;
+  const auto absorbed = absorbed_;
+  Kokkos::parallel_for(
+      "kiln::sph::rate", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {
+        const std::size_t first = offsets(i);
+        f(i) = heat_rate(states.data(), i, neighbours.data() + first, weights.data() + first,
+                         static_cast<LocalIndex>(offsets(i + 1) - first), masses(i), absorbed(i));
+      });
+}
+
+KILN_REGISTER(Model, HeatModel, "sph heat",
+              "heat deposition by smoothed particle hydrodynamics (NRL report, Eqs. 6-20)");
+
+}  // namespace kiln

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <memory>
+
+#include "framework/model/Model.hpp"
+#include "framework/registry/Specification.hpp"
+#include "physics/sph/HeatDomain.hpp"
+#include "physics/sph/HeatSource.hpp"
+#include "physics/sph/MaterialTable.hpp"
+#include "physics/sph/PairSum.hpp"
+
+namespace kiln {
+
+/// Heat conduction and deposition by smoothed particle hydrodynamics, the model of the NRL report (Eqs. 6–20):
+///
+///     f_i = 1/(ρ_i c_i) Σ_j m_j/ρ_j · 4 k_i k_j/(k_i + k_j) · (u_i − u_j) r_ij·∇W_ij/r_ij² + q_i A_i/(c_i m_i),
+///
+/// with ρ, c, k of the temperature from a table, masses fixed by ρ at the initial temperature, and the gradient of W
+/// taken at particle i. Pair terms are antisymmetric: Σ m_i c_i f_i = Σ q_i A_i to round-off.
+///
+/// Evaluations write to work arrays the model keeps: one evaluation at a time.
+class HeatModel final : public Model {
+ public:
+  static Specification specification();
+  HeatModel(const Teuchos::ParameterList& list, const Context& context);
+  /// From a group written by save_sample. `list` is the model's own checked block; particles, kernel and material are
+  /// not read again.
+  HeatModel(const Teuchos::ParameterList& list, const Context& context, const hdf5::Group& group);
+
+  Teuchos::RCP<const Map> rows() const override { return domain_.rows; }
+  Teuchos::RCP<const Map> sources() const override { return domain_.sources; }
+  std::vector<Field> fields() const override { return {{"temperature", "K"}}; }
+  void initial_state(VectorView u) const override;
+  void rate(ConstVectorView u, double time, VectorView f) const override;
+  ConstPositionView positions() const override { return domain_.positions; }
+
+  /// As the report has it: derivatives of the material's properties are left out.
+  void rate_jacobian_diagonal(ConstVectorView u, double time, VectorView diagonal) const override;
+  /// With the derivatives of the material's properties.
+  void apply_rate_jacobian(ConstVectorView u, double time, ConstMatrixView v, MatrixView product) const override;
+  /// With the derivatives of the material's properties. The first call sets up the graph and is collective.
+  Teuchos::RCP<const CrsMatrix> rate_jacobian_matrix(ConstVectorView u, double time) const override;
+
+  std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const override;
+  void save_sample(hdf5::Group& group) const override;
+
+  /// Particles, pairs and weights of this rank.
+  const HeatDomain& domain() const { return domain_; }
+  const MaterialTable& material() const { return table_; }
+
+ private:
+  HeatModel(const Teuchos::ParameterList& list, const Context& context, const MaterialTable& table);
+  HeatModel(const Teuchos::ParameterList& list, const MaterialTable& table, HeatDomain domain);
+  LocalIndex row_count() const { return static_cast<LocalIndex>(domain_.areas.extent(0)); }
+  LocalIndex source_count() const { return static_cast<LocalIndex>(domain_.masses.extent(0)); }
+  void check(const char* method, std::size_t u, std::size_t f) const;
+  /// Fills states_ from temperatures.
+  void update_states(ConstVectorView u) const;
+  /// Fills states_, slopes_ and absorbed_.
+  void linearise(ConstVectorView u, double time) const;
+  /// Fills absorbed_ at the heated rows.
+  void update_absorbed(double time) const;
+  /// Columns first_column … of `product`, at most Width.
+  template <int Width>
+  void apply_columns(ConstMatrixView v, MatrixView product, int first_column) const;
+  void make_matrix() const;
+
+  /// d/du of the fields of a ThermalState besides the temperature.
+  struct ThermalSlopes {
+    double resistivity;
+    double volume;
+    double specific_heat;
+  };
+
+  struct JacobianRow;
+  /// Columns of a multivector that go through the pairs together.
+  static constexpr int block_width = 8;
+  using PackedView = Kokkos::View<double* [block_width], Kokkos::LayoutRight, Device>;
+
+  Teuchos::ParameterList list_;
+  MaterialTable table_;
+  HeatDomain domain_;
+  double initial_temperature_;
+  std::unique_ptr<HeatSource> heat_source_;
+  IndexView heated_;  ///< rows with a heated area
+  PositionView heated_positions_;
+
+  // Work arrays: the sampled model is evaluated millions of times and must not allocate.
+  VectorView heated_flux_;  ///< q in W/m² at heated_
+  VectorView absorbed_;     ///< q_i A_i in W of every row
+  Kokkos::View<ThermalState<double>*, Device> states_;
+  mutable Kokkos::View<ThermalSlopes*, Device> slopes_;  ///< made by the first Jacobian
+  mutable PackedView packed_;
+  mutable Teuchos::RCP<CrsMatrix> matrix_;
+  mutable OffsetView matrix_slots_;  ///< where each pair's entry stands in the matrix's values
+  mutable OffsetView diagonal_slots_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,340 @@
+#include <fmt/format.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+
+#include "framework/base/Error.hpp"
+#include "framework/files/Hdf5.hpp"
+#include "physics/sph/HeatModel.hpp"
+
+namespace kiln {
+namespace {
+
+/// Local data of a domain on the host.
+struct HostDomain {
+  explicit HostDomain(const HeatDomain& domain)
+      : rows(ids(*domain.rows)),
+        sources(ids(*domain.sources)),
+        positions(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.positions)),
+        masses(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.masses)),
+        areas(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.areas)),
+        offsets(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.pairs.offsets)),
+        neighbours(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.pairs.neighbours)),
+        weights(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.weights)) {}
+
+  static std::vector<GlobalIndex> ids(const Map& map) {
+    std::vector<GlobalIndex> result(map.getNodeNumElements());
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = map.getGlobalElement(static_cast<LocalIndex>(i));
+    return result;
+  }
+
+  std::vector<GlobalIndex> rows, sources;
+  PositionView::HostMirror positions;
+  VectorView::HostMirror masses, areas;
+  OffsetView::HostMirror offsets;
+  IndexView::HostMirror neighbours;
+  VectorView::HostMirror weights;
+};
+
+/// The pieces of a domain as plain arrays, neighbours as indices into the sources; turned into views at the end.
+struct DomainParts {
+  std::vector<GlobalIndex> rows, sources;
+  std::vector<Point> positions;
+  std::vector<double> masses, areas, weights;
+  std::vector<std::size_t> offsets{0};
+  std::vector<LocalIndex> neighbours;
+};
+
+template <class View, class T>
+View filled(const std::vector<T>& values) {
+  View view(Kokkos::view_alloc(Kokkos::WithoutInitializing, "sample"), values.size());
+  const auto host = Kokkos::create_mirror_view(view);
+  std::copy(values.begin(), values.end(), host.data());
+  Kokkos::deep_copy(view, host);
+  return view;
+}
+
+HeatDomain assembled(const DomainParts& parts, const Teuchos::RCP<const Communicator>& communicator) {
+  HeatDomain domain;
+  domain.rows = map_of(parts.rows, communicator);
+  domain.sources = map_of(parts.sources, communicator);
+  domain.positions = position_view(parts.positions);
+  domain.masses = filled<VectorView>(parts.masses);
+  domain.areas = filled<VectorView>(parts.areas);
+  domain.weights = filled<VectorView>(parts.weights);
+  domain.pairs = {filled<OffsetView>(parts.offsets), filled<IndexView>(parts.neighbours)};
+  return domain;
+}
+
+/// Sources of chosen rows: the rows themselves, then every other one that `refers` to, ascending.
+std::vector<GlobalIndex> ordered_sources(const std::vector<GlobalIndex>& rows, std::vector<GlobalIndex> refers) {
+  std::sort(refers.begin(), refers.end());
+  refers.erase(std::unique(refers.begin(), refers.end()), refers.end());
+  std::vector<GlobalIndex> sources(rows);
+  std::set_difference(refers.begin(), refers.end(), rows.begin(), rows.end(), std::back_inserter(sources));
+  return sources;
+}
+
+/// Index of each id in a list that consists of `rows` ascending ids followed by other ascending ones.
+LocalIndex place(const std::vector<GlobalIndex>& sources, std::size_t rows, GlobalIndex id) {
+  const auto middle = sources.begin() + static_cast<std::ptrdiff_t>(rows);
+  auto found = std::lower_bound(sources.begin(), middle, id);
+  if (found == middle || *found != id) found = std::lower_bound(middle, sources.end(), id);
+  return static_cast<LocalIndex>(found - sources.begin());
+}
+
+/// Local arrays of all ranks, one after the other, on each rank.
+template <class T>
+std::vector<T> gathered(const std::vector<T>& local, const Communicator& communicator) {
+  const int ranks = communicator.getSize();
+  std::vector<int> counts(ranks);
+  const int count = static_cast<int>(local.size());
+  Teuchos::gatherAll(communicator, 1, &count, ranks, counts.data());
+  const int widest = *std::max_element(counts.begin(), counts.end());
+  std::vector<T> padded(local);
+  padded.resize(widest);
+  std::vector<T> received(static_cast<std::size_t>(widest) * ranks);
+  if (widest > 0) {
+    Teuchos::gatherAll(communicator, widest, padded.data(), widest * ranks, received.data());
+  }
+  std::vector<T> all;
+  for (int rank = 0; rank < ranks; ++rank) {
+    const auto first = received.begin() + static_cast<std::ptrdiff_t>(widest) * rank;
+    all.insert(all.end(), first, first + counts[rank]);
+  }
+  return all;
+}
+
+template <class T>
+std::vector<T> reordered(const std::vector<T>& values, const std::vector<std::size_t>& order) {
+  std::vector<T> result;
+  result.reserve(order.size());
+  for (const std::size_t i : order) result.push_back(values[i]);
+  return result;
+}
+
+std::vector<std::size_t> ascending(const std::vector<GlobalIndex>& ids) {
+  std::vector<std::size_t> order(ids.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&ids](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
+  return order;
+}
+
+}  // namespace
+
+HeatDomain sampled_domain(const HeatDomain& domain, const std::vector<GlobalIndex>& rows) {
+  const HostDomain from(domain);
+  std::vector<GlobalIndex> wanted(rows);
+  std::sort(wanted.begin(), wanted.end());
+  const auto twice = std::adjacent_find(wanted.begin(), wanted.end());
+  if (twice != wanted.end()) {
+    throw InputError("", fmt::format("particle {} is sampled twice", *twice), "each particle once");
+  }
+  DomainParts parts;
+  std::vector<LocalIndex> local_rows;
+  for (const GlobalIndex id : wanted) {
+    const LocalIndex local = domain.rows->getLocalElement(id);
+    if (local == Teuchos::OrdinalTraits<LocalIndex>::invalid()) continue;
+    parts.rows.push_back(id);
+    local_rows.push_back(local);
+  }
+  const Communicator& communicator = *domain.rows->getComm();
+  std::vector<int> held(wanted.size(), 0);
+  std::vector<int> found(wanted.size(), 0);
+  for (const GlobalIndex id : parts.rows) {
+    held[std::lower_bound(wanted.begin(), wanted.end(), id) - wanted.begin()] = 1;
+  }
+  if (!wanted.empty()) {
+    Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, static_cast<int>(held.size()), held.data(), found.data());
+  }
+  const auto missing = std::find(found.begin(), found.end(), 0);
+  if (missing != found.end()) {
+    throw InputError("", fmt::format("particle {} is no row of the model", wanted[missing - found.begin()]),
+                     fmt::format("ids of the model's {} rows", domain.rows->getGlobalNumElements()));
+  }
+
+  std::vector<GlobalIndex> refers;
+  for (const LocalIndex row : local_rows) {
+    for (std::size_t pair = from.offsets(row); pair < from.offsets(row + 1); ++pair) {
+      refers.push_back(from.sources[from.neighbours(pair)]);
+    }
+  }
+  parts.sources = ordered_sources(parts.rows, std::move(refers));
+  std::vector<LocalIndex> renumbered(from.sources.size());
+  for (std::size_t s = 0; s < parts.sources.size(); ++s) {
+    const LocalIndex old = domain.sources->getLocalElement(parts.sources[s]);
+    renumbered[old] = static_cast<LocalIndex>(s);
+    parts.positions.push_back({from.positions(old, 0), from.positions(old, 1), from.positions(old, 2)});
+    parts.masses.push_back(from.masses(old));
+  }
+  for (const LocalIndex row : local_rows) {
+    parts.areas.push_back(from.areas(row));
+    for (std::size_t pair = from.offsets(row); pair < from.offsets(row + 1); ++pair) {
+      parts.neighbours.push_back(renumbered[from.neighbours(pair)]);
+      parts.weights.push_back(from.weights(pair));
+    }
+    parts.offsets.push_back(parts.neighbours.size());
+  }
+  return assembled(parts, domain.rows->getComm());
+}
+
+void save_domain(const HeatDomain& domain, hdf5::Group& group) {
+  const HostDomain local(domain);
+  const Communicator& communicator = *domain.rows->getComm();
+  static_assert(std::is_same_v<GlobalIndex, long long>);
+
+  std::vector<double> local_areas(local.areas.data(), local.areas.data() + local.areas.extent(0));
+  std::vector<GlobalIndex> local_counts;
+  for (std::size_t row = 0; row < local.rows.size(); ++row) {
+    local_counts.push_back(static_cast<GlobalIndex>(local.offsets(row + 1) - local.offsets(row)));
+  }
+  std::vector<GlobalIndex> local_neighbours;
+  for (std::size_t pair = 0; pair < local.neighbours.extent(0); ++pair) {
+    local_neighbours.push_back(local.sources[local.neighbours(pair)]);
+  }
+  const std::vector<double> local_weights(local.weights.data(), local.weights.data() + local.weights.extent(0));
+  const auto rows = gathered(local.rows, communicator);
+  const auto areas = gathered(local_areas, communicator);
+  const auto counts = gathered(local_counts, communicator);
+  const auto neighbours = gathered(local_neighbours, communicator);
+  const auto weights = gathered(local_weights, communicator);
+  const std::vector<std::size_t> order = ascending(rows);
+
+  std::vector<std::size_t> starts(rows.size());
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    starts[row] = starts[row - 1] + static_cast<std::size_t>(counts[row - 1]);
+  }
+  std::vector<long long> offsets = {0};
+  std::vector<long long> ordered_neighbours;
+  std::vector<double> ordered_weights;
+  for (const std::size_t row : order) {
+    const auto first = static_cast<std::ptrdiff_t>(starts[row]);
+    const auto last = first + static_cast<std::ptrdiff_t>(counts[row]);
+    ordered_neighbours.insert(ordered_neighbours.end(), neighbours.begin() + first, neighbours.begin() + last);
+    ordered_weights.insert(ordered_weights.end(), weights.begin() + first, weights.begin() + last);
+    offsets.push_back(static_cast<long long>(ordered_neighbours.size()));
+  }
+  group.write("rows", reordered(rows, order));
+  group.write("heated_areas", reordered(areas, order));
+  group.attribute_of("heated_areas", "unit", "m^2");
+  group.write("offsets", offsets);
+  group.write("neighbours", ordered_neighbours);
+  group.write("weights", ordered_weights);
+  group.attribute_of("weights", "unit", "m^-5");
+
+  std::vector<double> local_places;
+  for (std::size_t s = 0; s < local.sources.size(); ++s) {
+    local_places.insert(local_places.end(), {local.positions(s, 0), local.positions(s, 1), local.positions(s, 2)});
+  }
+  const std::vector<double> local_masses(local.masses.data(), local.masses.data() + local.masses.extent(0));
+  const auto sources = gathered(local.sources, communicator);
+  const auto places = gathered(local_places, communicator);
+  const auto masses = gathered(local_masses, communicator);
+  std::vector<std::size_t> source_order = ascending(sources);
+  // Halos repeat what a neighbour rank holds.
+  source_order.erase(std::unique(source_order.begin(), source_order.end(),
+                                 [&](std::size_t a, std::size_t b) { return sources[a] == sources[b]; }),
+                     source_order.end());
+  hdf5::Array<double> positions{{source_order.size(), 3}, {}};
+  for (const std::size_t s : source_order) {
+    positions.values.insert(positions.values.end(), {places[3 * s], places[3 * s + 1], places[3 * s + 2]});
+  }
+  group.write("sources", reordered(sources, source_order));
+  group.write("positions", positions);
+  group.attribute_of("positions", "unit", "m");
+  group.write("masses", reordered(masses, source_order));
+  group.attribute_of("masses", "unit", "kg");
+}
+
+HeatDomain restored_domain(const hdf5::Group& group, const Teuchos::RCP<const Communicator>& communicator) {
+  const std::vector<long long> rows = group.integers("rows", {0}).values;
+  const std::vector<long long> sources = group.integers("sources", {0}).values;
+  const std::vector<long long> offsets = group.integers("offsets", {rows.size() + 1}).values;
+  const std::vector<long long> neighbours = group.integers("neighbours", {0}).values;
+  const std::vector<double> weights = group.reals("weights", {neighbours.size()}).values;
+  const std::vector<double> areas = group.reals("heated_areas", {rows.size()}).values;
+  const std::vector<double> masses = group.reals("masses", {sources.size()}).values;
+  const std::vector<double> positions = group.reals("positions", {sources.size(), 3}).values;
+  const auto require = [&group](bool right, const char* name, const char* expected) {
+    if (!right) throw FileError(group.file(), group.path() + "/" + name, "does not fit the sample", expected);
+  };
+  require(std::is_sorted(rows.begin(), rows.end()), "rows", "ascending ids");
+  require(std::is_sorted(sources.begin(), sources.end()), "sources", "ascending ids");
+  require(offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end()) &&
+              offsets.back() == static_cast<long long>(neighbours.size()),
+          "offsets", "a rise from 0 to the number of neighbours");
+  require(std::includes(sources.begin(), sources.end(), rows.begin(), rows.end()), "rows", "ids among the sources");
+  for (const long long id : neighbours) {
+    require(std::binary_search(sources.begin(), sources.end(), id), "neighbours", "ids among the sources");
+  }
+
+  // Block r ends at the first row that reaches its share of the pairs.
+  const auto block_start = [&](int rank) {
+    const double share = static_cast<double>(offsets.back()) * rank / communicator->getSize();
+    const auto end = std::lower_bound(offsets.begin(), offsets.end(), share, [](long long offset, double wanted) {
+      return static_cast<double>(offset) < wanted;
+    });
+    return static_cast<std::size_t>(end - offsets.begin());
+  };
+  const std::size_t first_row = communicator->getRank() == 0 ? 0 : block_start(communicator->getRank());
+  const std::size_t last_row =
+      communicator->getRank() + 1 == communicator->getSize() ? rows.size() : block_start(communicator->getRank() + 1);
+
+  DomainParts parts;
+  parts.rows.assign(rows.begin() + static_cast<std::ptrdiff_t>(first_row),
+                    rows.begin() + static_cast<std::ptrdiff_t>(last_row));
+  const auto first_pair = static_cast<std::ptrdiff_t>(offsets[first_row]);
+  const auto last_pair = static_cast<std::ptrdiff_t>(offsets[last_row]);
+  parts.sources = ordered_sources(
+      parts.rows, std::vector<GlobalIndex>(neighbours.begin() + first_pair, neighbours.begin() + last_pair));
+  for (const GlobalIndex id : parts.sources) {
+    const auto s = static_cast<std::size_t>(std::lower_bound(sources.begin(), sources.end(), id) - sources.begin());
+    parts.positions.push_back({positions[3 * s], positions[3 * s + 1], positions[3 * s + 2]});
+    parts.masses.push_back(masses[s]);
+  }
+  for (std::size_t row = first_row; row < last_row; ++row) {
+    parts.areas.push_back(areas[row]);
+    parts.offsets.push_back(static_cast<std::size_t>(offsets[row + 1] - offsets[first_row]));
+  }
+  for (std::ptrdiff_t pair = first_pair; pair < last_pair; ++pair) {
+    parts.neighbours.push_back(place(parts.sources, parts.rows.size(), neighbours[pair]));
+  }
+  parts.weights.assign(weights.begin() + first_pair, weights.begin() + last_pair);
+  return assembled(parts, communicator);
+}
+
+namespace {
+
+MaterialTable restored_table(const hdf5::Group& group) {
+  const hdf5::Group table = group.group("material");
+  const hdf5::Array<double> values = table.reals("properties", {0, 3});
+  if (values.shape[0] < 2) {
+    throw FileError(table.file(), table.path() + "/properties", "has fewer than 2 rows", "a table of properties");
+  }
+  return {table.real("from"), table.real("step"), values.values};
+}
+
+}  // namespace
+
+std::unique_ptr<Model> HeatModel::sampled(const std::vector<GlobalIndex>& rows) const {
+  auto model = std::unique_ptr<HeatModel>(new HeatModel(list_, table_, sampled_domain(domain_, rows)));
+  for (const Parameter& parameter : parameters_.list()) model->parameters_.set(parameter.name, *parameter.value);
+  return model;
+}
+
+void HeatModel::save_sample(hdf5::Group& group) const {
+  save_domain(domain_, group);
+  hdf5::Group table = group.create_group("material");
+  table.attribute("from", table_.from());
+  table.attribute("step", table_.step());
+  const std::vector<double> values = table_.values();
+  table.write("properties", hdf5::Array<double>{{values.size() / 3, 3}, values});
+  table.attribute_of("properties", "columns", "conductivity W/(m K), specific heat J/(kg K), density kg/m^3");
+}
+
+HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context, const hdf5::Group& group)
+    : HeatModel(list, restored_table(group), restored_domain(group, context.communicator)) {}
+
+}  // namespace kiln

@@ -1,0 +1,105 @@
+#include "physics/sph/HeatSource.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kiln {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Eq. 9: P/(2πσ²) exp(−r²/(2σ²)) with r the distance from start + velocity · t in the x-y plane, which deposits P; or,
+/// as the report prints it, exp(−r²/(2πσ²)), which deposits πP.
+class GaussianBeam final : public HeatSource {
+ public:
+  static Specification specification() {
+    Specification specification;
+    specification.real("power", "absorbed power").unit("W").at_least(0);
+    specification.real("width", "standard deviation of the beam").unit("m").above(0);
+    specification.reals("start", "x and y of the beam at t = 0").unit("m").length(2);
+    specification.reals("velocity", "velocity of the beam along x and y").unit("m/s").length(2);
+    specification
+        .choice("normalisation",
+                "standard: exponent -r^2/(2 width^2), deposits `power`; printed: -r^2/(2 pi width^2) as in Eq. 9, "
+                "deposits pi times as much",
+                {"standard", "printed"})
+        .defaults_to("standard");
+    return specification;
+  }
+
+  GaussianBeam(const Teuchos::ParameterList& list, const Context&)
+      : path_(list.name()),
+        power_(list.get<double>("power")),
+        width_(list.get<double>("width")),
+        printed_(list.isParameter("normalisation") && list.get<std::string>("normalisation") == "printed") {
+    const auto start = list.get<Teuchos::Array<double>>("start");
+    const auto velocity = list.get<Teuchos::Array<double>>("velocity");
+    for (int axis = 0; axis < 2; ++axis) {
+      start_[axis] = start[axis];
+      velocity_[axis] = velocity[axis];
+    }
+    parameters_.add("power", "W", &power_);
+    parameters_.add("width", "m", &width_);
+    parameters_.add("velocity.x", "m/s", &velocity_[0]);
+    parameters_.add("velocity.y", "m/s", &velocity_[1]);
+    parameters_.add("start.x", "m", &start_[0]);
+    parameters_.add("start.y", "m", &start_[1]);
+  }
+
+  void flux(double time, ConstPositionView positions, VectorView q) const override {
+    if (!(width_ > 0.0)) {
+      throw InputError(path_ + ".width", fmt::format("the beam's width is set to {}", width_), "a width in m above 0");
+    }
+    const double x = start_[0] + velocity_[0] * time;
+    const double y = start_[1] + velocity_[1] * time;
+    const double peak = power_ / (2.0 * pi * width_ * width_);
+    const double exponent = -1.0 / (2.0 * (printed_ ? pi : 1.0) * width_ * width_);
+    Kokkos::parallel_for(
+        "kiln::sph::gaussian beam", RangePolicy(0, static_cast<LocalIndex>(positions.extent(0))),
+        KOKKOS_LAMBDA(LocalIndex i) {
+          const double dx = positions(i, 0) - x;
+          const double dy = positions(i, 1) - y;
+          q(i) = peak * exp(exponent * (dx * dx + dy * dy));
+        });
+  }
+
+ private:
+  std::string path_;
+  double power_;
+  double width_;
+  double start_[2];
+  double velocity_[2];
+  bool printed_;
+};
+
+class UniformFlux final : public HeatSource {
+ public:
+  static Specification specification() {
+    Specification specification;
+    specification.real("flux", "heat flux into the heated surface").unit("W/m^2");
+    return specification;
+  }
+  UniformFlux(const Teuchos::ParameterList& list, const Context&) : flux_(list.get<double>("flux")) {
+    parameters_.add("flux", "W/m^2", &flux_);
+  }
+  void flux(double, ConstPositionView, VectorView q) const override { Kokkos::deep_copy(ExecutionSpace(), q, flux_); }
+
+ private:
+  double flux_;
+};
+
+/// An insulated surface.
+class NoHeatSource final : public HeatSource {
+ public:
+  static Specification specification() { return {}; }
+  NoHeatSource(const Teuchos::ParameterList&, const Context&) {}
+  void flux(double, ConstPositionView, VectorView q) const override { Kokkos::deep_copy(ExecutionSpace(), q, 0.0); }
+};
+
+KILN_REGISTER(HeatSource, GaussianBeam, "gaussian beam", "moving Gaussian beam (Eq. 9)");
+KILN_REGISTER(HeatSource, UniformFlux, "uniform flux", "the same flux everywhere on the heated surface");
+KILN_REGISTER(HeatSource, NoHeatSource, "none", "no heat enters");
+
+}  // namespace
+}  // namespace kiln

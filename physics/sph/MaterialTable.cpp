@@ -1,0 +1,65 @@
+#include "physics/sph/MaterialTable.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/base/Error.hpp"
+#include "physics/sph/Material.hpp"
+
+namespace kiln {
+namespace {
+
+void check(double value, const char* property, const char* unit, double u, const std::string& path) {
+  if (std::isfinite(value) && value > 0.0) return;
+  throw InputError(path, fmt::format("the {} at {} K is {}", property, u, value),
+                   fmt::format("a finite value in {} above 0 throughout the table", unit));
+}
+
+std::vector<double> tabulated(const Material& material, double from, double to, double step, const std::string& path) {
+  if (!std::isfinite(from) || !std::isfinite(to) || !(to > from)) {
+    throw InputError(path, fmt::format("the table of properties goes from {} K to {} K", from, to), "a rising range");
+  }
+  const double intervals = std::ceil((to - from) / step * (1.0 - 1e-12));
+  if (!(step > 0.0) || !(intervals < 1e8)) {
+    throw InputError(path, fmt::format("the table of properties has steps of {} K", step),
+                     "a step above 0 that gives at most 1e8 entries");
+  }
+  std::vector<double> values;
+  for (int i = 0; i <= static_cast<int>(intervals); ++i) {
+    const double u = from + i * step;
+    const MaterialPoint<double> point = material.at(u);
+    check(point.conductivity, "conductivity", "W/(m K)", u, path);
+    check(point.specific_heat, "specific heat", "J/(kg K)", u, path);
+    check(point.density, "density", "kg/m^3", u, path);
+    values.insert(values.end(), {point.conductivity, point.specific_heat, point.density});
+  }
+  return values;
+}
+
+}  // namespace
+
+MaterialTable::MaterialTable(const Material& material, double from, double to, double step, const std::string& path)
+    : MaterialTable(from, step, tabulated(material, from, to, step, path)) {}
+
+MaterialTable::MaterialTable(double from, double step, const std::vector<double>& values)
+    : from_(from), step_(step), inverse_step_(1.0 / step), intervals_(static_cast<LocalIndex>(values.size() / 3) - 1) {
+  if (values.size() % 3 != 0 || intervals_ < 1) {
+    throw std::invalid_argument(fmt::format("{} numbers do not make a material table", values.size()));
+  }
+  const Kokkos::View<double* [3], Kokkos::LayoutRight, Device> table("material table", values.size() / 3);
+  const auto host = Kokkos::create_mirror_view(table);
+  for (std::size_t i = 0; i < values.size(); ++i) host(i / 3, i % 3) = values[i];
+  Kokkos::deep_copy(table, host);
+  values_ = table;
+}
+
+std::vector<double> MaterialTable::values() const {
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values_);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < host.extent(0); ++i) values.insert(values.end(), {host(i, 0), host(i, 1), host(i, 2)});
+  return values;
+}
+
+}  // namespace kiln
