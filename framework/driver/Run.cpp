@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_StackedTimer.hpp>
+#include <Teuchos_TimeMonitor.hpp>
 #include <cstdio>
-#include <fstream>
-#include <optional>
+#include <cstdlib>
+#include <exception>
+#include <memory>
 
 #include "framework/base/Error.hpp"
 #include "framework/driver/Checkpoint.hpp"
@@ -15,7 +19,7 @@
 #include "framework/files/RunFolder.hpp"
 #include "framework/input/Input.hpp"
 #include "framework/method/Trainer.hpp"
-#include "framework/observers/Progress.hpp"
+#include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
@@ -35,7 +39,7 @@ class Assembly {
     const Teuchos::ParameterList& list = input.list();
     method_ = Registry<Method>::create(list.sublist("method"), {list, communicator});
     scheme_ = Registry<TimeScheme>::create(list.sublist("time").sublist("scheme"), {*method_, span_.step});
-    x_ = VectorView("kiln::run::unknown", method_->coordinates()->getLocalNumElements());
+    x_ = VectorView("kiln::run::unknown", local_size(*method_->coordinates()));
     const std::string identity = fmt::format("model:\n{}time:\n{}method:\n{}", to_yaml(list.sublist("model")),
                                              to_yaml(list.sublist("time")), to_yaml(list.sublist("method")));
     if (restart) {
@@ -81,6 +85,33 @@ class Assembly {
   std::unique_ptr<TimeScheme> scheme_;
   VectorView x_;
   std::vector<std::unique_ptr<Observer>> observers_;
+};
+
+struct Seconds {
+  double wall;
+  double cpu;  ///< summed over ranks
+};
+
+Seconds elapsed(const Stopwatch& watch, const Communicator& communicator) {
+  return {watch.wall_seconds(), watch.cpu_seconds(communicator)};
+}
+
+/// Collects all Teuchos::TimeMonitor regions of a command into one stacked timer.
+class Timers {
+ public:
+  explicit Timers(const char* name) : timer_(Teuchos::rcp(new Teuchos::StackedTimer(name))) {
+    Teuchos::TimeMonitor::setStackedTimer(timer_);
+  }
+  ~Timers() { Teuchos::TimeMonitor::setStackedTimer(Teuchos::null); }
+  Timers(const Timers&) = delete;
+  Timers& operator=(const Timers&) = delete;
+  std::string table(const Comm& communicator) const {
+    timer_->stopBaseTimer();
+    return table_of(*timer_, communicator);
+  }
+
+ private:
+  Teuchos::RCP<Teuchos::StackedTimer> timer_;
 };
 
 /// Builds with errors of components placed in the input file.
@@ -145,7 +176,8 @@ class TemporaryFolder {
 }  // namespace
 
 void run(const CommandOptions& options, const Comm& communicator) {
-  const Stopwatch total(communicator);
+  const Stopwatch total;
+  const Timers timers("kiln");
   const Input input = read_input(options, communicator);
   const Teuchos::ParameterList& list = input.list();
   const RunFolder folder(run_folder(list), *communicator);
@@ -155,9 +187,9 @@ void run(const CommandOptions& options, const Comm& communicator) {
   });
   const std::string type = list.sublist("method").get<std::string>("type");
   if (!options.quiet) {
-    assembly->add(std::make_unique<Progress>(type, assembly->span().last_step, communicator));
+    assembly->add(std::make_unique<ProgressObserver>(type, assembly->span().first_step, *communicator));
   }
-  const Seconds setup = total.elapsed();
+  const Seconds setup = elapsed(total, *communicator);
 
   RunReport report;
   nlohmann::json& facts = report.section("run");
@@ -168,7 +200,7 @@ void run(const CommandOptions& options, const Comm& communicator) {
   report.section("provenance") = provenance(*communicator);
 
   std::exception_ptr failure;
-  const Stopwatch loop(communicator);
+  const Stopwatch loop;
   LoopTotals totals;
   try {
     totals = assembly->march();
@@ -176,12 +208,14 @@ void run(const CommandOptions& options, const Comm& communicator) {
     facts["status"] = fmt::format("diverged: {}", error.what());
     failure = std::current_exception();
   }
-  const Seconds stepping = loop.elapsed();
+  const Seconds stepping = elapsed(loop, *communicator);
   report_solve(report, totals);
   if (failure == nullptr) assembly->finish(report);
-  const Seconds all = total.elapsed();
+  const Seconds all = elapsed(total, *communicator);
   report.section("time") = {{"setup_wall_s", setup.wall},   {"setup_cpu_s", setup.cpu},  {"loop_wall_s", stepping.wall},
                             {"loop_cpu_s", stepping.cpu},   {"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
+  report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
+  report.section("timers")["table"] = timers.table(communicator);
   write_report(report, folder.path(), communicator, options.quiet);
   if (failure != nullptr) std::rethrow_exception(failure);
 }
@@ -197,7 +231,8 @@ void check(const CommandOptions& options, const Comm& communicator) {
 }
 
 void train(const CommandOptions& options, const Comm& communicator) {
-  const Stopwatch total(communicator);
+  const Stopwatch total;
+  const Timers timers("kiln");
   const Input input = read_input(options, communicator);
   const Teuchos::ParameterList& list = input.list();
   if (!list.isSublist("reduction")) {
@@ -216,8 +251,10 @@ void train(const CommandOptions& options, const Comm& communicator) {
     trainer->train(reduction_file(list), report);
     return 0;
   });
-  const Seconds all = total.elapsed();
+  const Seconds all = elapsed(total, *communicator);
   report.section("time") = {{"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
+  report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
+  report.section("timers")["table"] = timers.table(communicator);
   write_report(report, folder.path(), communicator, options.quiet);
 }
 

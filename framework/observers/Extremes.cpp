@@ -20,7 +20,7 @@ Extremes::Extremes(const Teuchos::ParameterList& list, const Context& context)
     : method_(context.method),
       communicator_(context.communicator),
       every_(list.get<int>("every")),
-      state_("kiln::extremes::state", context.method.particles()->getLocalNumElements() * context.method.fields().size()),
+      state_("kiln::extremes::state", local_size(*context.method.particles()) * context.method.fields().size()),
       largest_(context.method.fields().size(), {-std::numeric_limits<double>::infinity()}),
       smallest_(context.method.fields().size(), {std::numeric_limits<double>::infinity()}) {}
 
