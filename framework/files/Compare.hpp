@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kiln {
+
+/// How one field (a dataset, a CSV column, a JSON number) of two results differs.
+struct FieldDifference {
+  std::string field;
+  std::size_t compared = 0;  ///< numbers
+  std::size_t failed = 0;    ///< numbers beyond the tolerance
+  double worst = 0.0;        ///< largest |a − b| / max(|a|, |b|, floor)
+  double a = 0.0, b = 0.0;   ///< the values there
+  std::string where;         ///< frame, time, particle, position; or line; or index
+};
+
+struct CompareResult {
+  std::vector<FieldDifference> fields;
+  std::vector<std::string> faults;  ///< what is missing, has another shape, or cannot be read
+  std::size_t compared() const;
+  /// No field fails, nothing is missing, and something was compared.
+  bool same() const;
+  /// A line for each field, then the faults, then the verdict.
+  std::string text() const;
+};
+
+/// Compares two run folders, or two files of the same kind (.h5, .csv, .json), number by number. Two numbers agree when
+/// |a − b| ≤ tolerance · max(|a|, |b|, floor). Fails on a side, a file or a field that is missing, on other shapes, on
+/// a NaN on either side, and when nothing was compared. In a run file, a frame that neither side has written is passed
+/// over. In JSON only numbers count, without the keys `provenance`, `timing` and `speedup` and those that tell seconds
+/// of work or memory; in a folder all files of the three kinds count. Not collective: one rank reads both.
+/// Throws std::invalid_argument for a tolerance or floor that is negative or not finite.
+CompareResult compare(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance, double floor);
+
+}  // namespace kiln

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "framework/base/Error.hpp"
+#include "framework/files/CompareNumbers.hpp"
+#include "framework/files/CsvTable.hpp"
+
+namespace kiln {
+namespace {
+
+nlohmann::json read_json(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  if (json.is_discarded()) throw FileError(path.string(), "", "is no readable JSON");
+  return json;
+}
+
+/// Two runs of the same thing never take the same time.
+bool is_left_out(const std::string& key) {
+  static const std::set<std::string> keys = {"provenance", "timing", "speedup"};
+  const auto contains = [&key](const char* word) { return key.find(word) != std::string::npos; };
+  return keys.count(key) > 0 || contains("wall_") || contains("cpu") || contains("memory");
+}
+
+class JsonComparison {
+ public:
+  JsonComparison(std::string label, NumberComparison& comparison) : label_(std::move(label)), comparison_(comparison) {}
+
+  void compare(const nlohmann::json& a, const nlohmann::json& b, const std::string& path) {
+    // JSON has no NaN: it is written as null.
+    const bool number_a = a.is_number() || a.is_null(), number_b = b.is_number() || b.is_null();
+    if (number_a && number_b) {
+      if (a.is_null() && b.is_null()) return comparison_.fault(label_ + path + " is not a number on either side");
+      comparison_.begin(label_ + path);
+      comparison_.add(value(a), value(b), [&] { return path; });
+    } else if (a.is_object() && b.is_object()) {
+      compare_objects(a, b, path);
+    } else if (a.is_array() && b.is_array()) {
+      compare_arrays(a, b, path);
+    } else if (a.type() != b.type()) {
+      comparison_.fault(fmt::format("{}{} is {} and {}", label_, path, a.type_name(), b.type_name()));
+    }
+  }
+
+ private:
+  static double value(const nlohmann::json& json) {
+    return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+  }
+  void compare_objects(const nlohmann::json& a, const nlohmann::json& b, const std::string& path) {
+    std::set<std::string> keys;
+    for (const auto& [key, entry] : a.items()) keys.insert(key);
+    for (const auto& [key, entry] : b.items()) keys.insert(key);
+    for (const std::string& key : keys) {
+      if (is_left_out(key)) continue;
+      const std::string full = path.empty() ? key : path + "." + key;
+      if (!a.contains(key) || !b.contains(key)) {
+        comparison_.fault(
+            fmt::format("{}{} is missing on the {} side", label_, full, a.contains(key) ? "second" : "first"));
+      } else {
+        compare(a.at(key), b.at(key), full);
+      }
+    }
+  }
+  void compare_arrays(const nlohmann::json& a, const nlohmann::json& b, const std::string& path) {
+    if (a.size() != b.size()) {
+      return comparison_.fault(fmt::format("{}{} has {} and {} entries", label_, path, a.size(), b.size()));
+    }
+    for (std::size_t i = 0; i < a.size(); ++i) compare(a[i], b[i], fmt::format("{}[{}]", path, i));
+  }
+
+  std::string label_;
+  NumberComparison& comparison_;
+};
+
+}  // namespace
+
+void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b, const std::string& label,
+                 NumberComparison& comparison) {
+  const CsvTable left = read_csv(a), right = read_csv(b);
+  if (left.columns != right.columns) {
+    return comparison.fault(fmt::format("{} and {} have different columns", a.string(), b.string()));
+  }
+  if (left.rows.size() != right.rows.size()) {
+    return comparison.fault(
+        fmt::format("{} has {} rows, {} has {}", a.string(), left.rows.size(), b.string(), right.rows.size()));
+  }
+  for (std::size_t column = 0; column < left.columns.size(); ++column) {
+    comparison.begin(label + left.columns[column]);
+    for (std::size_t row = 0; row < left.rows.size(); ++row) {
+      comparison.add(left.rows[row][column], right.rows[row][column],
+                     [&] { return fmt::format("line {}, {} = {}", row + 2, left.columns[0], left.rows[row][0]); });
+    }
+  }
+}
+
+void compare_json(const std::filesystem::path& a, const std::filesystem::path& b, const std::string& label,
+                  NumberComparison& comparison) {
+  JsonComparison(label, comparison).compare(read_json(a), read_json(b), "");
+}
+
+}  // namespace kiln

@@ -1,0 +1,65 @@
+#include "framework/files/CsvTable.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+#include "framework/base/Error.hpp"
+
+namespace kiln {
+namespace {
+
+/// Cells of one line; quotes as in RFC 4180, without line breaks inside them.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      const bool doubled = quoted && i + 1 < line.size() && line[i + 1] == '"';
+      if (doubled) cells.back() += line[i++];
+      if (!doubled) quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      cells.emplace_back();
+    } else if (line[i] != '\r') {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+CsvTable read_csv(const std::filesystem::path& path) {
+  errno = 0;
+  std::ifstream file(path);
+  if (!file) throw FileError(path.string(), "", std::string("cannot be read: ") + std::strerror(errno));
+  CsvTable table;
+  std::string line;
+  if (!std::getline(file, line)) throw FileError(path.string(), "", "is empty", "a header row and rows of numbers");
+  table.columns = cells_of(line);
+  for (int number = 2; std::getline(file, line); ++number) {
+    if (line.empty()) continue;
+    const std::vector<std::string> cells = cells_of(line);
+    const std::string place = fmt::format("line {}", number);
+    if (cells.size() != table.columns.size()) {
+      throw FileError(path.string(), place, fmt::format("has {} cells", cells.size()),
+                      fmt::format("{}, as the header has", table.columns.size()));
+    }
+    std::vector<double>& row = table.rows.emplace_back();
+    for (const std::string& cell : cells) {
+      double value = 0.0;
+      const char* end = cell.data() + cell.size();
+      const auto [stop, error] = std::from_chars(cell.data(), end, value);
+      if (error != std::errc() || stop != end) {
+        throw FileError(path.string(), place, fmt::format("'{}' is no number", cell), "a number");
+      }
+      row.push_back(value);
+    }
+  }
+  return table;
+}
+
+}  // namespace kiln

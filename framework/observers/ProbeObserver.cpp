@@ -1,0 +1,190 @@
+#include "framework/observers/ProbeObserver.hpp"
+
+#include <fmt/format.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "framework/base/Error.hpp"
+#include "framework/files/AtomicFile.hpp"
+#include "framework/files/CsvTable.hpp"
+#include "framework/files/Together.hpp"
+#include "framework/registry/Registry.hpp"
+#include "framework/report/RunReport.hpp"
+
+namespace kiln {
+namespace {
+
+Kokkos::View<LocalIndex*, Device> entries_on(int rank, const std::vector<NearestParticle>& particles, int components) {
+  Kokkos::View<LocalIndex*, Device> entries("kiln::observers::entries", particles.size() * components);
+  const auto host = Kokkos::create_mirror_view(entries);
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    for (int c = 0; c < components; ++c) {
+      host(p * components + c) = particles[p].rank == rank ? particles[p].local * components + c : -1;
+    }
+  }
+  Kokkos::deep_copy(entries, host);
+  return entries;
+}
+
+}  // namespace
+
+Specification ProbeObserver::specification() {
+  Specification point;
+  point.text("name", "what the probe is called in probes.csv");
+  point.reals("position", "where it lies").unit("m").length(3);
+  Specification specification;
+  specification.integer("every", "steps between two rows").at_least(1).defaults_to(1);
+  specification.sections("points", "the probes", std::move(point));
+  specification
+      .real("tolerance",
+            "farthest a probe may lie from a particle; without it, as far as that particle's nearest neighbour")
+      .unit("m")
+      .at_least(0)
+      .optional();
+  specification.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
+    std::vector<std::string> names;
+    const Teuchos::ParameterList& points = list.sublist("points");
+    for (int i = 0; points.isSublist(std::to_string(i)); ++i) {
+      const auto name = points.sublist(std::to_string(i)).get<std::string>("name");
+      if (std::find(names.begin(), names.end(), name) != names.end()) {
+        problems.push_back({fmt::format("points.{}.name", i), fmt::format("'{}' is an earlier probe's name", name),
+                            "a name of its own", ""});
+      }
+      names.push_back(name);
+    }
+  });
+  return specification;
+}
+
+ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& context)
+    : method_(context.method),
+      file_(context.folder / "probes.csv"),
+      communicator_(context.communicator),
+      every_(list.get<int>("every")),
+      probes_(find_probes(list, context)),
+      fields_(method_.fields()),
+      u_("kiln::observers::state", method_.positions().extent(0) * fields_.size()),
+      picked_("kiln::observers::picked", probes_.size() * fields_.size()),
+      picked_host_(Kokkos::create_mirror_view(picked_)),
+      values_(probes_.size() * fields_.size()),
+      log_(file_, columns(), context.first_step, communicator_) {
+  std::vector<NearestParticle> particles;
+  for (const Probe& probe : probes_) particles.push_back(probe.particle);
+  entries_ = entries_on(communicator_->getRank(), particles, static_cast<int>(fields_.size()));
+  write_places(context);
+}
+
+std::vector<ProbeObserver::Probe> ProbeObserver::find_probes(const Teuchos::ParameterList& list,
+                                                             const Context& context) {
+  const Teuchos::RCP<const Map> map = context.method.particles();
+  const ConstPositionView positions = context.method.positions();
+  const auto box = bounding_box(positions, *map->getComm());
+  const Teuchos::ParameterList& points = list.sublist("points");
+  std::vector<Probe> probes;
+  std::vector<Problem> problems;
+  for (int i = 0; points.isSublist(std::to_string(i)); ++i) {
+    const Teuchos::ParameterList& entry = points.sublist(std::to_string(i));
+    const auto& position = entry.get<Teuchos::Array<double>>("position");
+    Probe probe{entry.get<std::string>("name"), {position[0], position[1], position[2]}, {}};
+    probe.particle = nearest_particle(*map, positions, probe.point);
+    const double tolerance = list.isParameter("tolerance") ? list.get<double>("tolerance") : probe.particle.spacing;
+    if (probe.particle.id < 0 || !(probe.particle.distance <= tolerance)) {
+      problems.push_back(
+          {fmt::format("{}.points.{}.position", list.name(), i),
+           fmt::format("probe '{}' at ({:.6g}, {:.6g}, {:.6g}) m is outside: the nearest particle is {:.4g} m away",
+                       probe.name, probe.point[0], probe.point[1], probe.point[2], probe.particle.distance),
+           fmt::format("a point at most {:.4g} m from a particle; these lie in [{:.6g}, {:.6g}] × [{:.6g}, {:.6g}] × "
+                       "[{:.6g}, {:.6g}] m",
+                       tolerance, box[0][0], box[1][0], box[0][1], box[1][1], box[0][2], box[1][2]),
+           ""});
+    }
+    probes.push_back(std::move(probe));
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return probes;
+}
+
+std::vector<std::string> ProbeObserver::columns() const {
+  std::vector<std::string> columns{"step", "time [s]"};
+  for (const Probe& probe : probes_) {
+    for (const Field& field : fields_) columns.push_back(fmt::format("{} {} [{}]", probe.name, field.name, field.unit));
+  }
+  return columns;
+}
+
+void ProbeObserver::write_places(const Context& context) const {
+  nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  for (const Probe& probe : probes_) {
+    nlohmann::ordered_json place;
+    place["name"] = probe.name;
+    place["point_m"] = probe.point;
+    place["particle"] = probe.particle.id;
+    place["position_m"] = probe.particle.position;
+    place["distance_m"] = probe.particle.distance;
+    places.push_back(std::move(place));
+  }
+  write_atomically(context.folder / "probes.json", places.dump(2) + "\n", communicator_);
+}
+
+void ProbeObserver::gather_values() {
+  const auto picked = picked_;
+  const auto entries = entries_;
+  const auto u = u_;
+  Kokkos::parallel_for(
+      "kiln::observers::pick", RangePolicy(0, static_cast<LocalIndex>(picked.extent(0))),
+      KOKKOS_LAMBDA(const LocalIndex i) { picked(i) = entries(i) < 0 ? 0.0 : u(entries(i)); });
+  Kokkos::deep_copy(picked_host_, picked_);
+  // Each value is on one rank and 0 on the others.
+  Teuchos::reduce(picked_host_.data(), values_.data(), static_cast<int>(values_.size()), Teuchos::REDUCE_SUM, 0,
+                  *communicator_);
+}
+
+void ProbeObserver::observe(const Moment& moment) {
+  if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
+  method_.state(moment.x, u_);
+  gather_values();
+  std::vector<double> row{moment.time};
+  row.insert(row.end(), values_.begin(), values_.end());
+  log_.add(moment.step, row);
+}
+
+/// From the file, so that a restarted run's summary covers its earlier part too.
+nlohmann::json ProbeObserver::summary() const {
+  const CsvTable table = read_csv(file_);
+  const std::size_t components = fields_.size();
+  nlohmann::json section = nlohmann::json::array();
+  for (std::size_t p = 0; p < probes_.size(); ++p) {
+    nlohmann::json probe = {
+        {"name", probes_[p].name}, {"particle", probes_[p].particle.id}, {"position_m", probes_[p].particle.position}};
+    for (std::size_t c = 0; c < components && !table.rows.empty(); ++c) {
+      const std::size_t column = 2 + p * components + c;
+      const auto lower = [column](const std::vector<double>& a, const std::vector<double>& b) {
+        return a[column] < b[column];
+      };
+      const std::vector<double>& highest = *std::max_element(table.rows.begin(), table.rows.end(), lower);
+      probe[fields_[c].name] = {{"unit", fields_[c].unit},
+                                {"highest", highest[column]},
+                                {"highest_at_s", highest[1]},
+                                {"last", table.rows.back()[column]}};
+    }
+    section.push_back(std::move(probe));
+  }
+  return section;
+}
+
+void ProbeObserver::finish(RunReport& report) {
+  log_.check();
+  std::string text;
+  on_root(*communicator_, file_.string(), [&]() -> std::optional<Fault> {
+    text = summary().dump();
+    return std::nullopt;
+  });
+  report.section("probes") = nlohmann::json::parse(broadcast(*communicator_, text));
+}
+
+KILN_REGISTER(Observer, ProbeObserver, "probes", "histories of the state at given points: probes.csv");
+
+}  // namespace kiln

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "framework/files/CsvLog.hpp"
+#include "framework/observers/NearestParticle.hpp"
+#include "framework/observers/Observer.hpp"
+#include "framework/registry/Specification.hpp"
+
+namespace kiln {
+
+/// Writes the state at given points into probes.csv, one row every so many steps. A probe reads the particle nearest to
+/// its point; probes.json says which one that is, and where. A point too far from any particle is a mistake of the
+/// input: too far means farther than `tolerance`, and without that key farther than that particle's own nearest
+/// neighbour.
+class ProbeObserver : public Observer {
+ public:
+  static Specification specification();
+  /// Throws InputError that lists all probes outside the particles, FileError when its files cannot be written.
+  ProbeObserver(const Teuchos::ParameterList& list, const Context& context);
+
+  void observe(const Moment& moment) override;
+  void finish(RunReport& report) override;
+
+ private:
+  struct Probe {
+    std::string name;
+    std::array<double, 3> point;  ///< in m, as asked for
+    NearestParticle particle;
+  };
+  static std::vector<Probe> find_probes(const Teuchos::ParameterList& list, const Context& context);
+  void write_places(const Context& context) const;
+  std::vector<std::string> columns() const;
+  void gather_values();
+  nlohmann::json summary() const;
+
+  Method& method_;
+  std::filesystem::path file_;
+  Teuchos::RCP<const Communicator> communicator_;
+  int every_;
+  std::vector<Probe> probes_;
+  std::vector<Field> fields_;
+  VectorView u_;
+  Kokkos::View<LocalIndex*, Device> entries_;  ///< of u_, one a value; −1: on another rank
+  VectorView picked_;
+  VectorView::HostMirror picked_host_;
+  std::vector<double> values_;  ///< probe by probe, component by component; on rank 0
+  CsvLog log_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,53 @@
+#include "framework/report/Timing.hpp"
+
+#include <sys/resource.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <ctime>
+#include <sstream>
+
+namespace kiln {
+namespace {
+
+double seconds_of(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+Stopwatch::Stopwatch()
+    : wall_start_(seconds_of(CLOCK_MONOTONIC)), process_start_(seconds_of(CLOCK_PROCESS_CPUTIME_ID)) {}
+
+double Stopwatch::wall_seconds() const { return seconds_of(CLOCK_MONOTONIC) - wall_start_; }
+
+double Stopwatch::process_seconds() const { return seconds_of(CLOCK_PROCESS_CPUTIME_ID) - process_start_; }
+
+double Stopwatch::cpu_seconds(const Communicator& communicator) const {
+  const double mine = process_seconds();
+  double sum = 0.0;
+  Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, 1, &mine, &sum);
+  return sum;
+}
+
+long long peak_memory(const Communicator& communicator) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const long long mine = 1024LL * usage.ru_maxrss;
+  long long largest = 0;
+  Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &mine, &largest);
+  return largest;
+}
+
+std::string table_of(Teuchos::StackedTimer& timer, const Teuchos::RCP<const Communicator>& communicator) {
+  Teuchos::StackedTimer::OutputOptions options;
+  options.output_fraction = true;
+  options.output_minmax = communicator->getSize() > 1;
+  options.print_warnings = false;
+  std::ostringstream text;
+  timer.report(text, communicator, options);
+  return communicator->getRank() == 0 ? text.str() : std::string();
+}
+
+}  // namespace kiln

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Teuchos_StackedTimer.hpp>
+#include <string>
+
+#include "framework/base/LinearAlgebra.hpp"
+
+namespace kiln {
+
+/// Measures a stage: wall seconds and the processor seconds of all threads of all ranks.
+class Stopwatch {
+ public:
+  /// Starts now.
+  Stopwatch();
+  double wall_seconds() const;
+  /// User and system time of this process's threads since the start.
+  double process_seconds() const;
+  /// Summed over ranks. Collective.
+  double cpu_seconds(const Communicator& communicator) const;
+
+ private:
+  double wall_start_;
+  double process_start_;
+};
+
+/// Largest memory any rank has held so far, in bytes. Collective.
+long long peak_memory(const Communicator& communicator);
+
+/// The timer's table with minimum, mean and maximum over the ranks; on rank 0, empty elsewhere. The timer is stopped
+/// already. Collective.
+std::string table_of(Teuchos::StackedTimer& timer, const Teuchos::RCP<const Communicator>& communicator);
+
+}  // namespace kiln

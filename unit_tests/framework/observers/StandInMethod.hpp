@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Map.hpp>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "framework/base/Error.hpp"
+#include "framework/method/Method.hpp"
+
+namespace kiln {
+
+/// A method whose unknown is the state of particles on a 4 × 3 × 2 lattice, 10 µm apart, dealt to the ranks like cards.
+/// Two components.
+class StandInMethod : public Method {
+ public:
+  static constexpr int particle_count = 24;
+  static constexpr double spacing = 1e-5;
+
+  StandInMethod() {
+    const auto world = Tpetra::getDefaultComm();
+    std::vector<GlobalIndex> ids;
+    for (GlobalIndex id = particle_count - 1; id >= 0; --id) {
+      if (id % world->getSize() == world->getRank()) ids.push_back(id);
+    }
+    map_ = Teuchos::rcp(new Map(particle_count, ids.data(), static_cast<LocalIndex>(ids.size()), 0, world));
+    positions_ = PositionView("kiln::test::positions", ids.size());
+    const auto host = Kokkos::create_mirror_view(positions_);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      host(i, 0) = spacing * static_cast<double>(ids[i] % 4);
+      host(i, 1) = spacing * static_cast<double>(ids[i] / 4 % 3);
+      host(i, 2) = spacing * static_cast<double>(ids[i] / 12);
+    }
+    Kokkos::deep_copy(positions_, host);
+    ids_ = std::move(ids);
+  }
+
+  /// 300 K + id + step/3 and −id.
+  static double temperature(long long id, int step) { return 300.0 + static_cast<double>(id) + step / 3.0; }
+  VectorView unknown(int step) const {
+    VectorView x("kiln::test::unknown", 2 * ids_.size());
+    const auto host = Kokkos::create_mirror_view(x);
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      host(2 * i) = temperature(ids_[i], step);
+      host(2 * i + 1) = -static_cast<double>(ids_[i]);
+    }
+    Kokkos::deep_copy(x, host);
+    return x;
+  }
+
+  Teuchos::RCP<const Map> particles() const override { return map_; }
+  ConstPositionView positions() const override { return positions_; }
+  std::vector<Field> fields() const override { return {{"temperature", "K"}, {"phase", "1"}}; }
+  void state(ConstVectorView x, VectorView u) const override { Kokkos::deep_copy(u, x); }
+  void report(nlohmann::json&) const override {}
+
+  Teuchos::RCP<const Map> coordinates() const override { throw NotOffered("StandInMethod", "coordinates"); }
+  LocalIndex row_size() const override { throw NotOffered("StandInMethod", "row_size"); }
+  void initial(VectorView) const override { throw NotOffered("StandInMethod", "initial"); }
+  void evaluate(ConstVectorView, double, VectorView, VectorView) override {
+    throw NotOffered("StandInMethod", "evaluate");
+  }
+  int rate(ConstVectorView, double, VectorView) override { throw NotOffered("StandInMethod", "rate"); }
+  SolveReport solve(const StepResidual&, VectorView, VectorView, VectorView) override {
+    throw NotOffered("StandInMethod", "solve");
+  }
+  Parameters& parameters() override { throw NotOffered("StandInMethod", "parameters"); }
+  void save(hdf5::Group&) const override { throw NotOffered("StandInMethod", "save"); }
+  void restore(const hdf5::Group&) override { throw NotOffered("StandInMethod", "restore"); }
+
+ private:
+  Teuchos::RCP<const Map> map_;
+  std::vector<GlobalIndex> ids_;
+  PositionView positions_;
+};
+
+}  // namespace kiln
