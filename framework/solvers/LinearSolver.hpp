@@ -10,7 +10,7 @@ namespace kiln {
 /// What one linear solve did.
 struct LinearSolveReport {
   int iterations = 0;
-  double relative_residual = 0.0;  ///< ‖b − A x‖/‖b‖ as the solver measures it
+  double relative_residual = 0.0;  ///< ‖b − A x‖/‖b‖: the solver's own figure, recomputed for a failed solve
   bool converged = true;
   std::string problem;  ///< solver's name, what it reached and what was asked for; empty when converged
 };
