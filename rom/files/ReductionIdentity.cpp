@@ -39,7 +39,7 @@ void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Paramet
   const std::string text = to_yaml(model);
   root.attribute("model_type", model.get<std::string>("type"));
   root.attribute("model_input", text);
-  root.attribute("model_hash", hash(text));
+  root.attribute("model_hash", hash_of(text));
   hdf5::Group live = root.create_group("parameters");
   for (const Parameter& parameter : parameters.list()) live.attribute(parameter.name, *parameter.value);
   const Teuchos::ParameterList& time = input.sublist("time");
@@ -61,7 +61,7 @@ void require_format(const hdf5::Group& root) {
 
 void require_model(const hdf5::Group& root, const Teuchos::ParameterList& model) {
   const std::string trained = root.text("model_input");
-  if (hash(trained) != root.text("model_hash")) {
+  if (hash_of(trained) != root.text("model_hash")) {
     throw FileError(root.file(), "model_input", "does not match its hash: the file was changed after training");
   }
   std::vector<std::string> live;

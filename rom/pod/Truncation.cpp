@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "framework/base/Error.hpp"
 
@@ -39,8 +41,14 @@ Specification PodSettings::specification() {
   return s;
 }
 
+double PodSettings::resolution(std::size_t snapshots) const {
+  const double round_off = std::numeric_limits<double>::epsilon() * static_cast<double>(std::max<std::size_t>(10, snapshots));
+  return algorithm == Algorithm::gram ? std::sqrt(round_off) : 10.0 * round_off;
+}
+
 Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings) {
-  const double floor = singular_values.empty() ? 0.0 : settings.resolution() * singular_values.front();
+  const double resolution = settings.resolution(singular_values.size());
+  const double floor = singular_values.empty() ? 0.0 : resolution * singular_values.front();
   const auto end = std::find_if(singular_values.begin(), singular_values.end(),
                                 [floor](double sigma) { return !(sigma > floor) || !(sigma > 0.0); });
   const int independent = static_cast<int>(end - singular_values.begin());
@@ -51,8 +59,8 @@ Truncation truncate(const std::vector<double>& singular_values, const PodSetting
   if (settings.rank && *settings.rank > independent) {
     throw InputError(settings.path + ".rank",
                      fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "
-                                 "values above {:.0e} of the largest)",
-                                 *settings.rank, singular_values.size(), independent, settings.resolution()),
+                                 "values above {:.1e} of the largest)",
+                                 *settings.rank, singular_values.size(), independent, resolution),
                      fmt::format("a rank of at most {}", independent));
   }
   const auto weight = [&settings](double sigma) {

@@ -12,8 +12,8 @@ namespace kiln {
 /// The blocks `reduction.basis` and `reduction.residual_basis`: how a POD is computed and where it is cut off.
 struct PodSettings {
   enum class Algorithm {
-    gram,  ///< eigenvectors of SᵀS; resolves singular values above 1e-8 of the largest
-    tsqr   ///< QR of S spread over the ranks, then the SVD of R; resolves singular values above 1e-12 of the largest
+    gram,  ///< eigenvectors of SᵀS
+    tsqr   ///< QR of S spread over the ranks, then the SVD of R
   };
   enum class EnergyOf { squared_singular_values, singular_values };
 
@@ -27,8 +27,9 @@ struct PodSettings {
   explicit PodSettings(const Teuchos::ParameterList& list);
   static Specification specification();
 
-  /// Singular values at or below this fraction of the largest are round-off of the algorithm.
-  double resolution() const { return algorithm == Algorithm::gram ? 1e-8 : 1e-12; }
+  /// Of m snapshots, singular values at or below this fraction of the largest are round-off of the algorithm: √(m ε) for
+  /// gram, whose eigenvalues σ² carry errors of m ε σ_1², and 10 m ε for tsqr; m at least 10.
+  double resolution(std::size_t snapshots) const;
 };
 
 /// Where a POD is cut off.

@@ -4,9 +4,9 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "framework/base/Error.hpp"
+#include "framework/method/Divergence.hpp"
 
 namespace kiln {
 namespace {
@@ -135,7 +135,7 @@ int PetrovGalerkin::rate(ConstVectorView x, double time, VectorView dxdt) {
   model_->rate(state_, time, rate_);
   if (observer_) observer_(rate_);
   project(rate_, dxdt);
-  if (!std::isfinite(norm_of(dxdt))) throw_diverged("the rate is not finite", time, rate_);
+  if (!std::isfinite(norm_of(dxdt))) throw_diverged("the rate is not finite", time, rate_, rate_);
   factors_.solve(dxdt);
   return 1;
 }
@@ -147,7 +147,7 @@ double PetrovGalerkin::reduced_residual(const StepResidual& residual, ConstVecto
   if (observer_) observer_(residual_);
   project(residual_, g_);
   const double norm = norm_of(g_);
-  if (!std::isfinite(norm)) throw_diverged("the residual is not finite", residual.time, residual_);
+  if (!std::isfinite(norm)) throw_diverged("the residual is not finite", residual.time, f, residual_);
   return norm;
 }
 
@@ -186,7 +186,7 @@ SolveReport PetrovGalerkin::solve(const StepResidual& residual, VectorView x, Ve
     ++report.residuals;
     norm = settings_.line_search ? search_line(residual, x, f, norm, next, report) : next;
     if (norm > growth_limit * report.first_norm) {
-      throw_diverged("the reduced residual has grown a million times in one step", residual.time, residual_);
+      throw_diverged("the reduced residual has grown a million times in one step", residual.time, f, residual_);
     }
   }
   report.last_norm = norm;
@@ -203,7 +203,9 @@ SolveReport PetrovGalerkin::solve_explicit(const StepResidual& residual, VectorV
   project(residual_, g_);
   SolveReport report;
   report.first_norm = norm_of(g_);
-  if (!std::isfinite(report.first_norm)) throw_diverged("the residual is not finite", residual.time, residual_);
+  if (!std::isfinite(report.first_norm)) {
+    throw_diverged("the residual is not finite", residual.time, residual.history, residual_);
+  }
   factors_.solve(g_);
   for (std::size_t i = 0; i < x.extent(0); ++i) x(i) -= g_(i);
   evaluate(x, residual.time, u, f);
@@ -211,40 +213,9 @@ SolveReport PetrovGalerkin::solve_explicit(const StepResidual& residual, VectorV
   return report;
 }
 
-void PetrovGalerkin::throw_diverged(const std::string& what, double time, ConstVectorView values) const {
-  // The worst value of this rank: a non-finite one before any finite one, then the larger.
-  const std::size_t components = std::max<std::size_t>(1, model_->fields().size());
-  double worst = -1.0;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < values.extent(0); ++i) {
-    const double size = std::isfinite(values(i)) ? std::abs(values(i)) : INFINITY;
-    if (size > worst) {
-      worst = size;
-      at = i;
-    }
-  }
-  double worst_of_all = worst;
-  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MAX, 1, &worst, &worst_of_all);
-  if (worst_of_all < 0.0) throw DivergenceError(what, time);
-
-  const Teuchos::RCP<const Map> rows = model_->rows();
-  const bool mine = worst == worst_of_all;
-  const LocalIndex row = static_cast<LocalIndex>(at / components);
-  const long long none = std::numeric_limits<long long>::max();
-  const long long candidate = mine ? static_cast<long long>(rows->getGlobalElement(row)) : none;
-  long long particle = none;
-  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MIN, 1, &candidate, &particle);
-  std::array<double, 3> here{}, position{};
-  double known = 1.0;
-  try {
-    const ConstPositionView positions = model_->positions();
-    if (candidate == particle) here = {positions(row, 0), positions(row, 1), positions(row, 2)};
-  } catch (const NotOffered&) {
-    known = 0.0;
-  }
-  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 3, here.data(), position.data());
-  if (known == 0.0) throw DivergenceError(what, time, DivergenceError::Place{particle, {}});
-  throw DivergenceError(what, time, DivergenceError::Place{particle, position});
+void PetrovGalerkin::throw_diverged(const std::string& what, double time, ConstVectorView f,
+                                    ConstVectorView measure) const {
+  throw divergence(*model_, what, time, Kokkos::subview(state_, std::make_pair(LocalIndex(0), row_size_)), f, measure);
 }
 
 }  // namespace kiln

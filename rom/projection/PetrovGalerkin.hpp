@@ -76,7 +76,8 @@ class PetrovGalerkin : public Method {
   /// Halves the update until ‖Ψᵀr‖ falls below `norm`; x already holds x − step_. Returns the new norm.
   double search_line(const StepResidual& residual, VectorView x, VectorView f, double norm, double next,
                      SolveReport& report);
-  [[noreturn]] void throw_diverged(const std::string& what, double time, ConstVectorView values) const;
+  [[noreturn]] void throw_diverged(const std::string& what, double time, ConstVectorView f,
+                                   ConstVectorView measure) const;
 
   std::shared_ptr<Model> model_;
   std::unique_ptr<TrialSpace> trial_;

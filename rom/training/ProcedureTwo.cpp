@@ -127,8 +127,7 @@ LoopTotals ProcedureTwo::march(Method& method, std::vector<Observer*> observers,
   const std::unique_ptr<TimeScheme> scheme =
       Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{method, span_.step});
   scheme->start(x, 0.0);
-  const Observer::Context context{method, {}, communicator_, 0, span_.last_step, span_.step};
-  ProgressObserver progress(context, label);
+  ProgressObserver progress(label, 0, *communicator_);
   observers.push_back(&progress);
   return run_time_loop(method, *scheme, x, span_, observers);
 }

@@ -209,6 +209,7 @@ Teuchos::ParameterList input_of(const Case& values) {
   solver.set("tolerance", 1e-12);
   solver.set("iterations", 200);
   solver.set("preconditioner", std::string("none"));
+  solver.set("restart", 100);
   input.sublist("method").setName("method");
   input.sublist("method").set("type", values.method);
   Teuchos::ParameterList& reduction = input.sublist("reduction");
@@ -227,11 +228,11 @@ Teuchos::ParameterList input_of(const Case& values) {
   sampling.set("samples", values.samples);
   reduction.sublist("snapshots").set("every", 1);
   Teuchos::ParameterList& point = reduction.sublist("queries").sublist("0");
-  point.set("position", Teuchos::Array<double>{1.0, 0.0, 0.0});
+  point.set("position", Teuchos::Array<double>(Teuchos::tuple(1.0, 0.0, 0.0)));
   input.sublist("output").set("directory", values.folder);
   Teuchos::ParameterList& probe = input.sublist("output").sublist("probes").sublist("points").sublist("0");
   probe.set("name", std::string("middle"));
-  probe.set("position", Teuchos::Array<double>{0.5, 0.0, 0.0});
+  probe.set("position", Teuchos::Array<double>(Teuchos::tuple(0.49, 0.0, 0.0)));
   return input;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "framework/model/Model.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln::test {

@@ -124,7 +124,9 @@ TEST_P(PodOf, IsTheSameOnAnyNumberOfRanks) {
   const Pod together = pod(known.snapshots(*world()), settings(GetParam(), 8), *world());
   const int begin = known.first(*world(), world()->getRank());
   for (std::size_t k = 0; k < 8; ++k) {
-    EXPECT_NEAR(together.singular_values[k], alone.singular_values[k], 1e-12);
+    // Eigenvalues of SᵀS carry errors of ε σ_1², so singular values of ε σ_1²/σ.
+    const double round_off = 10 * 2.2e-16 * 30.0 * 30.0 / known.sigma[k];
+    EXPECT_NEAR(together.singular_values[k], alone.singular_values[k], std::max(1e-12, round_off));
     for (std::size_t i = 0; i < together.modes.extent(0); ++i) {
       EXPECT_NEAR(together.modes(i, k), alone.modes(begin + i, k), 1e-7);
     }
@@ -158,7 +160,7 @@ TEST(Pod, GramAndTsqrAgreeWithTheirSigns) {
 }
 
 TEST(Pod, GramIsOrthonormalisedAgainWhereItLostOrthogonality) {
-  const Known known{120, 8, {1.0, 1e-2, 1e-4, 1e-6, 6e-8}};
+  const Known known{120, 8, {1.0, 1e-2, 1e-4, 1e-6, 1e-7}};
   const Pod result = pod(known.snapshots(*world()), settings("gram", 5), *world());
   EXPECT_TRUE(result.reorthogonalised);
   EXPECT_LT(result.orthogonality, 1e-13);
@@ -170,7 +172,7 @@ TEST(Pod, TsqrResolvesWhatGramCannot) {
   EXPECT_NEAR(result.singular_values[3], 1e-10, 1e-15);
   EXPECT_EQ(message([&] { pod(known.snapshots(*world()), settings("gram", 4), *world()); }),
             "reduction.basis.rank: 4 basis vectors are asked for, but of 8 snapshots only 3 are independent (singular "
-            "values above 1e-08 of the largest); expected a rank of at most 3");
+            "values above 4.7e-08 of the largest); expected a rank of at most 3");
 }
 
 TEST(Pod, ZeroSnapshotsAreRefused) {

@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <Tpetra_Map.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "Projections.hpp"
+#include "framework/files/Hdf5.hpp"
+#include "framework/method/Trainer.hpp"
+#include "rom/files/ReductionFile.hpp"
+#include "unit_tests/framework/files/TestFolder.hpp"
+
+namespace kiln {
+namespace {
+
+using test::Case;
+using test::largest_difference;
+using test::march;
+using test::self;
+using test::world;
+
+RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator) {
+  const Teuchos::ParameterList input = test::input_of(values);
+  RunReport report;
+  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, communicator})
+      ->train(values.folder + "/reduction.h5", report);
+  return report;
+}
+
+std::unique_ptr<Method> method_of(Case values, const std::string& type,
+                                  const Teuchos::RCP<const Communicator>& communicator) {
+  values.method = type;
+  const Teuchos::ParameterList input = test::input_of(values);
+  return Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
+}
+
+std::vector<double> run(const Case& values, const std::string& type,
+                        const Teuchos::RCP<const Communicator>& communicator) {
+  return march(*method_of(values, type, communicator), values);
+}
+
+/// Largest difference over the particles a method holds, as a share of the largest rise.
+double error(const std::vector<double>& held, const std::vector<double>& exact) {
+  double worst = 0.0, rise = 0.0;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == 0.0) continue;
+    worst = std::max(worst, std::abs(held[i] - exact[i]));
+    rise = std::max(rise, std::abs(exact[i] - 0.5));
+  }
+  return worst / rise;
+}
+
+class Training : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Components, Training, testing::Values(1, 2));
+
+TEST_P(Training, MakesReducedRunsThatFollowTheFullOrderOne) {
+  const TestFolder folder;
+  Case values;
+  values.components = GetParam();
+  values.folder = folder.path().string();
+  values.tolerance = 1e-8;
+  train(values, world());
+  const std::vector<double> exact = run(values, "fom", world());
+  EXPECT_LT(error(run(values, "galerkin", world()), exact), 5e-3);
+  EXPECT_LT(error(run(values, "lspg", world()), exact), 5e-3);
+  const std::vector<double> sampled = run(values, "gnat", world());
+  EXPECT_LT(error(sampled, exact), 1e-2);
+  // The two queried particles are told, the last one among them.
+  EXPECT_NE(sampled[29 * values.components], 0.0);
+  EXPECT_NE(sampled[59 * values.components], 0.0);
+}
+
+TEST_P(Training, IsTheSameOnAnyNumberOfRanks) {
+  const TestFolder folder;
+  Case values;
+  values.components = GetParam();
+  values.tolerance = 1e-10;
+  values.basis_rank = 8;
+  values.residual_rank = 9;
+  values.samples = 16;
+  // The small singular values that gram loses to round-off would differ.
+  values.algorithm = "tsqr";
+  Case serial = values;
+  values.folder = folder.path().string();
+  serial.folder = alone.path();
+  train(values, world());
+  train(serial, self());
+  for (const char* type : {"galerkin", "lspg", "gnat"}) {
+    const std::vector<double> expected = run(serial, type, self());
+    EXPECT_LT(largest_difference(run(values, type, world()), expected), 1e-10) << type;
+    // A file written on one rank is read on many.
+    Case shared = serial;
+    shared.folder = folder / "rank0";
+    EXPECT_LT(largest_difference(run(shared, type, world()), expected), 1e-10) << type;
+  }
+}
+
+TEST(Training, WritesASelfContainedFile) {
+  const TestFolder folder;
+  Case values;
+  values.folder = folder.path().string();
+  RunReport report = train(values, world());
+  const hdf5::File file = hdf5::File::read(values.folder + "/reduction.h5", world());
+  EXPECT_EQ(file.text("format"), "kiln reduction");
+  EXPECT_EQ(file.text("model_type"), "test chain");
+  EXPECT_EQ(file.group("parameters").real("power"), 40.0);
+  EXPECT_EQ(file.group("time").real("step"), values.step);
+  const hdf5::Group window = file.group("windows").group("0");
+  EXPECT_EQ(window.group("basis").shape("modes"), (std::vector<std::size_t>{60, 10}));
+  EXPECT_EQ(window.group("basis").shape("reference"), (std::vector<std::size_t>{60, 1}));
+  EXPECT_EQ(window.group("basis").shape("singular_values"), (std::vector<std::size_t>{40}));
+  const hdf5::Group mesh = window.group("sample_mesh");
+  EXPECT_EQ(mesh.shape("rows"), (std::vector<std::size_t>{24}));
+  EXPECT_EQ(mesh.shape("gappy_operator"), (std::vector<std::size_t>{12, 24}));
+  EXPECT_GT(mesh.real("sigma_min"), 0.0);
+  EXPECT_EQ(window.group("queries").integers("particles").values, (std::vector<long long>{29, 59}));
+  // The basis rows at the sources are those of the full basis.
+  const std::vector<long long> sources = mesh.integers("sources").values;
+  const hdf5::Array<double> all = window.group("basis").reals("modes"), some = mesh.reals("modes");
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    for (int k = 0; k < 10; ++k) EXPECT_EQ(some.values[i * 10 + k], all.values[sources[i] * 10 + k]);
+  }
+  const nlohmann::json& facts = report.section("training");
+  EXPECT_EQ(facts["stages"].size(), 5u);
+  EXPECT_EQ(facts["basis"]["rank"], 10);
+  EXPECT_EQ(facts["lspg"]["residual_snapshots"], facts["lspg"]["residuals"]);
+  EXPECT_EQ(facts["sampled"], 24);
+}
+
+TEST(Training, AllRowsAndACompleteResidualBasisMakeGnatLspg) {
+  const TestFolder folder;
+  Case values;
+  values.count = 16;
+  values.steps = 30;
+  values.tolerance = 1e-10;
+  values.basis_rank = 5;
+  values.residual_rank = 16;
+  values.samples = 16;
+  values.algorithm = "tsqr";
+  values.folder = folder.path().string();
+  train(values, world());
+  EXPECT_LT(largest_difference(run(values, "gnat", world()), run(values, "lspg", world())), 1e-8);
+}
+
+TEST(Training, ServesExplicitSchemes) {
+  const TestFolder folder;
+  Case values;
+  values.scheme = "rk4";
+  values.folder = folder.path().string();
+  train(values, world());
+  const std::vector<double> exact = run(values, "fom", world());
+  EXPECT_LT(error(run(values, "galerkin", world()), exact), 1e-2);
+  EXPECT_LT(error(run(values, "gnat", world()), exact), 5e-2);
+}
+
+TEST(Gnat, HoldsEachSourceAndQueriedParticleOnce) {
+  const TestFolder folder;
+  Case values;
+  values.folder = folder.path().string();
+  train(values, world());
+  const auto gnat = method_of(values, "gnat", world());
+  EXPECT_TRUE(gnat->particles()->isOneToOne());
+  const hdf5::File file = hdf5::File::read(values.folder + "/reduction.h5", world());
+  const hdf5::Group window = file.group("windows").group("0");
+  std::vector<long long> ids = window.group("sample_mesh").integers("sources").values;
+  for (const long long query : window.group("queries").integers("particles").values) ids.push_back(query);
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  EXPECT_EQ(gnat->particles()->getGlobalNumElements(), ids.size());
+  const ConstPositionView positions = gnat->positions();
+  for (std::size_t i = 0; i < positions.extent(0); ++i) {
+    const auto id = gnat->particles()->getGlobalElement(static_cast<LocalIndex>(i));
+    EXPECT_DOUBLE_EQ(positions(i, 0), (static_cast<double>(id) + 0.5) / values.count);
+  }
+  nlohmann::json facts;
+  gnat->report(facts);
+  EXPECT_EQ(facts["sampled"], 24);
+  EXPECT_EQ(facts["residual_rank"], 12);
+  EXPECT_EQ(facts["basis_rank"], 10);
+  EXPECT_EQ(facts["full_order_particles"], 60);
+}
+
+TEST(Gnat, TakesNewValuesOfLiveParameters) {
+  const TestFolder folder;
+  Case values;
+  values.folder = folder.path().string();
+  train(values, world());
+  Case hotter = values;
+  hotter.power = 44.0;
+  const std::vector<double> exact = run(hotter, "fom", world());
+  EXPECT_LT(error(run(hotter, "gnat", world()), exact), 0.05);
+  EXPECT_GT(error(run(values, "gnat", world()), exact), 0.05);
+}
+
+}  // namespace
+}  // namespace kiln
