@@ -1,1 +1,0 @@
-// Keeps the object library non-empty until the room's first source is merged.
