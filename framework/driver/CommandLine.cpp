@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Teuchos_CommHelpers.hpp>
 #include <cstdio>
 #include <functional>
 
@@ -14,6 +15,7 @@
 #include "framework/registry/Describe.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
+#include "framework/report/RunReport.hpp"
 
 namespace kiln {
 namespace {
@@ -55,7 +57,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   run_app->add_flag("--restart", options.restart, "continue from the last checkpoint in the run's folder");
   run_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
   run_app->callback([&] {
-    command = [&] {
+    command = [&]() -> int {
       run(options, communicator);
       return exit_success;
     };
@@ -65,7 +67,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   add_input_options(train_app, options);
   train_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
   train_app->callback([&] {
-    command = [&] {
+    command = [&]() -> int {
       train(options, communicator);
       return exit_success;
     };
@@ -74,14 +76,14 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   CLI::App* check_app = app.add_subcommand("check", "Check an input without running it; prints it with all defaults");
   add_input_options(check_app, options);
   check_app->callback([&] {
-    command = [&] {
+    command = [&]() -> int {
       check(options, communicator);
       return exit_success;
     };
   });
 
   app.add_subcommand("list", "List all components: models, methods, schemes, kernels, …")->callback([&] {
-    command = [&] {
+    command = [&]() -> int {
       print(*communicator, list_components());
       return exit_success;
     };
@@ -91,8 +93,8 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   describe_app->add_option("NAME", name, "a component or a category of `kiln list`, or 'input' for the whole file")
       ->required();
   describe_app->callback([&] {
-    command = [&] {
-      print(*communicator, name == whole_input ? describe("Keys of an input file", run_specification()) : describe(name));
+    command = [&]() -> int {
+      print(*communicator, name == whole_input ? describe(run_specification(), "Keys of an input file") : describe(name));
       return exit_success;
     };
   });
@@ -100,8 +102,8 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   CLI::App* template_app = app.add_subcommand("template", "Print a commented YAML block to start from");
   template_app->add_option("NAME", name, "a component of `kiln list`, or 'input' for the whole file")->required();
   template_app->callback([&] {
-    command = [&] {
-      print(*communicator, name == whole_input ? template_of("Input file", run_specification()) : template_of(name));
+    command = [&]() -> int {
+      print(*communicator, name == whole_input ? template_of(run_specification(), "Input file") : template_of(name));
       return exit_success;
     };
   });
@@ -109,21 +111,26 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
   compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required();
   compare_app->add_option("B", right, "the same kind; A's errors are relative to it")->required();
-  compare_app->add_option("--tolerance", tolerance, "largest relative difference", true)->check(CLI::NonNegativeNumber);
-  compare_app->add_option("--floor", floor, "values below it count as this large", true)->check(CLI::NonNegativeNumber);
+  compare_app->add_option("--tolerance", tolerance, "largest relative difference")->capture_default_str()->check(CLI::NonNegativeNumber);
+  compare_app->add_option("--floor", floor, "values below it count as this large")->capture_default_str()->check(CLI::NonNegativeNumber);
   compare_app->callback([&] {
-    command = [&] {
-      const CompareResult result = compare(left, right, tolerance, floor);
-      print(*communicator, result.text());
-      return result.equal() ? exit_success : exit_failure;
+    command = [&]() -> int {
+      int same = 0;
+      if (communicator->getRank() == 0) {
+        const CompareResult result = compare(left, right, tolerance, floor);
+        print(*communicator, result.text());
+        same = result.same() ? 1 : 0;
+      }
+      Teuchos::broadcast(*communicator, 0, &same);
+      return same == 1 ? exit_success : exit_failure;
     };
   });
 
   CLI::App* report_app = app.add_subcommand("report", "Print the report of a finished run");
   report_app->add_option("DIR", folder, "run folder")->required();
   report_app->callback([&] {
-    command = [&] {
-      print(*communicator, readable(read_report(folder)));
+    command = [&]() -> int {
+      print(*communicator, readable(read_report(folder, *communicator)));
       return exit_success;
     };
   });

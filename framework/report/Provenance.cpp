@@ -83,6 +83,8 @@ std::string host_name() {
 
 }  // namespace
 
+std::string version_line() { return fmt::format("kiln {} ({}, {})", build::version, build::commit, build::build_type); }
+
 nlohmann::json provenance(const Communicator& communicator) {
   utsname system{};
   ::uname(&system);

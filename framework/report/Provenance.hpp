@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "framework/base/LinearAlgebra.hpp"
 
@@ -10,5 +11,8 @@ namespace kiln {
 /// the BLAS that is loaded now (not the one that was linked) and its threads; processor, kernel, ranks and date (UTC).
 /// A flat object of texts and integers, the same on every rank. Collective.
 nlohmann::json provenance(const Communicator& communicator);
+
+/// "kiln VERSION (COMMIT, BUILD TYPE)", for --version.
+std::string version_line();
 
 }  // namespace kiln

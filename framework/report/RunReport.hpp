@@ -1,6 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+
+#include "framework/base/LinearAlgebra.hpp"
 
 namespace kiln {
 
@@ -15,5 +19,8 @@ class RunReport {
  private:
   nlohmann::json facts_ = nlohmann::json::object();
 };
+
+/// The facts in `folder`/report.json. Throws FileError for a file that is missing or no report. Collective.
+nlohmann::json read_report(const std::filesystem::path& folder, const Communicator& communicator);
 
 }  // namespace kiln

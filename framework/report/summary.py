@@ -80,8 +80,8 @@ def summarise(folder):
         "worst_probe_error_percent_of_rise": float(max(e["percent_of_rise"].max() for e in errors.values())),
         "field_l2_error_percent": float(field_error(full, reduced, folder / "reduction.h5")),
         "commit": provenance["commit"],
-        "machine": provenance["machine"],
-        "blas": provenance["blas"],
+        "machine": f"{provenance['processor']}, {provenance['cores']} cores",
+        "blas": provenance.get("openblas", provenance["blas"]),
         "build_flags": provenance["build_flags"],
     }
 
