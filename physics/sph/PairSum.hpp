@@ -47,6 +47,9 @@ inline double pair_lanes(const ThermalState<double>* states, const ThermalState<
   const PairLanes resistivity_i = {i.resistivity, i.resistivity, i.resistivity, i.resistivity};
   PairLanes sum = {0.0, 0.0, 0.0, 0.0};
   for (LocalIndex pair = 0; pair + 4 <= count; pair += 4) {
+    // The hardware's own prefetching stops at each 4 KiB page of these two streams: a third of the time.
+    __builtin_prefetch(weights + pair + 512);
+    __builtin_prefetch(sources + pair + 1024);
     PairLanes s0, s1, s2, s3, weight;
     __builtin_memcpy(&s0, &states[sources[pair]], sizeof s0);
     __builtin_memcpy(&s1, &states[sources[pair + 1]], sizeof s1);
