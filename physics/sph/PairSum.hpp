@@ -26,12 +26,13 @@ KOKKOS_INLINE_FUNCTION ThermalState<Scalar> thermal_state(const MaterialTable& t
   return {temperature, 1.0 / point.conductivity, mass / point.density, point.specific_heat};
 }
 
-/// w V_j (u_i − u_j) / (1/k_i + 1/k_j), a quarter of a term of Eq. 7's sum with w = r_ij·∇W_ij / r_ij² in 1/m⁵. Also
-/// takes several pairs at once, as vectors of GCC and Clang.
+/// Adds w V_j (u_i − u_j) / (1/k_i + 1/k_j) to `sum`, a quarter of a term of Eq. 7's sum with w = r_ij·∇W_ij / r_ij² in
+/// 1/m⁵. Also takes several pairs at once, as vectors of GCC and Clang.
 template <class Weight, class Scalar>
-KOKKOS_FORCEINLINE_FUNCTION Scalar pair_term(const Weight& weight, const Scalar& u_i, const Scalar& resistivity_i,
-                                             const Scalar& u_j, const Scalar& resistivity_j, const Scalar& volume_j) {
-  return weight * volume_j * (u_i - u_j) / (resistivity_i + resistivity_j);
+KOKKOS_FORCEINLINE_FUNCTION void add_pair(Scalar& sum, const Weight& weight, const Scalar& u_i,
+                                          const Scalar& resistivity_i, const Scalar& u_j, const Scalar& resistivity_j,
+                                          const Scalar& volume_j) {
+  sum += weight * volume_j * (u_i - u_j) / (resistivity_i + resistivity_j);
 }
 
 #if defined(__GNUC__) && !defined(__CUDA_ARCH__) && !defined(__HIP_DEVICE_COMPILE__)
@@ -39,7 +40,7 @@ KOKKOS_FORCEINLINE_FUNCTION Scalar pair_term(const Weight& weight, const Scalar&
 using PairLanes = double __attribute__((vector_size(32)));
 static_assert(sizeof(ThermalState<double>) == sizeof(PairLanes));
 
-/// Sum of pair_term over pairs [0, count / 4 · 4). Whole states are loaded and transposed in registers: two thirds of
+/// Sum of add_pair over pairs [0, count / 4 · 4). Whole states are loaded and transposed in registers: two thirds of
 /// the time of gathering field by field, which is what compilers make of the plain loop.
 inline double pair_lanes(const ThermalState<double>* states, const ThermalState<double>& i, const LocalIndex* sources,
                          const double* weights, LocalIndex count) {
@@ -47,6 +48,9 @@ inline double pair_lanes(const ThermalState<double>* states, const ThermalState<
   const PairLanes resistivity_i = {i.resistivity, i.resistivity, i.resistivity, i.resistivity};
   PairLanes sum = {0.0, 0.0, 0.0, 0.0};
   for (LocalIndex pair = 0; pair + 4 <= count; pair += 4) {
+    // The hardware's own prefetching stops at each 4 KiB page of these two streams: a third of the time.
+    __builtin_prefetch(weights + pair + 512);
+    __builtin_prefetch(sources + pair + 1024);
     PairLanes s0, s1, s2, s3, weight;
     __builtin_memcpy(&s0, &states[sources[pair]], sizeof s0);
     __builtin_memcpy(&s1, &states[sources[pair + 1]], sizeof s1);
@@ -60,13 +64,13 @@ inline double pair_lanes(const ThermalState<double>* states, const ThermalState<
     const PairLanes u_j = __builtin_shufflevector(even01, even23, 0, 1, 4, 5);
     const PairLanes volume_j = __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
     const PairLanes resistivity_j = __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5);
-    sum += pair_term(weight, u_i, resistivity_i, u_j, resistivity_j, volume_j);
+    add_pair(sum, weight, u_i, resistivity_i, u_j, resistivity_j, volume_j);
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 #endif
 
-/// Σ_j of pair_term over a row's pairs, in their order up to lanes: the same bits wherever the row lives.
+/// Σ_j of add_pair over a row's pairs, in their order up to lanes: the same bits wherever the row lives.
 template <class Scalar>
 KOKKOS_INLINE_FUNCTION Scalar pair_sum(const ThermalState<Scalar>* states, const ThermalState<Scalar>& i,
                                        const LocalIndex* sources, const double* weights, LocalIndex count) {
@@ -80,7 +84,7 @@ KOKKOS_INLINE_FUNCTION Scalar pair_sum(const ThermalState<Scalar>* states, const
 #endif
   for (; pair < count; ++pair) {
     const ThermalState<Scalar>& j = states[sources[pair]];
-    sum += pair_term(weights[pair], i.temperature, i.resistivity, j.temperature, j.resistivity, j.volume);
+    add_pair(sum, weights[pair], i.temperature, i.resistivity, j.temperature, j.resistivity, j.volume);
   }
   return sum;
 }

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 
 #include "framework/base/Error.hpp"
+#include "framework/input/Input.hpp"
+#include "unit_tests/framework/files/TestFolder.hpp"
 #include "unit_tests/physics/sph/HeatCase.hpp"
 
 namespace kiln {
@@ -99,6 +102,53 @@ TEST(HeatErrors, ArraysOfTheWrongLength) {
   const auto model = HeatCase().model();
   VectorView f("f", model->rows()->getNodeNumElements());
   EXPECT_THROW(model->rate(VectorView("u", 3), 0.0, f), std::invalid_argument);
+}
+
+/// The block of a YAML file through the checker, with one line replaced.
+Teuchos::ParameterList checked(const std::string& line, const std::string& replacement) {
+  std::string text =
+      "model:\n  type: sph heat\n  particles:\n    type: lattice\n    origin: [0 mm, -1 mm, 0 mm]\n"
+      "    size: [0.4 mm, 0.2 mm, 0.2 mm]\n    count: [11, 6, 6]\n  material: 316L\n"
+      "  initial_temperature: 293.15 K\n  heat_source: none\n";
+  text.replace(text.find(line), line.size(), replacement);
+  const TestFolder folder;
+  const auto everyone = Tpetra::getDefaultComm();
+  if (everyone->getRank() == 0) std::ofstream(folder / "case.yaml") << text;
+  everyone->barrier();
+  Specification specification;
+  specification.component<Model>("model", "the model");
+  return Input::read(folder / "case.yaml", {}, specification, *everyone).list().sublist("model");
+}
+
+std::string message_of(const std::string& line, const std::string& replacement) {
+  try {
+    checked(line, replacement);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+TEST(HeatInput, DefaultsAreThoseOfTheReport) {
+  const Teuchos::ParameterList list = checked("none", "none");
+  EXPECT_EQ(list.get<double>("smoothing_length"), 1.5);
+  EXPECT_EQ(list.sublist("kernel").get<std::string>("type"), "cubic spline");
+  EXPECT_EQ(list.get<std::string>("boundary"), "as printed");
+  EXPECT_EQ(list.sublist("particles").get<std::string>("placement"), "nodes");
+  EXPECT_EQ(list.sublist("table").get<double>("step"), 1.0);
+  const auto model = Registry<Model>::create(list, {Tpetra::getDefaultComm()});
+  EXPECT_EQ(model->rows()->getGlobalNumElements(), 396u);
+}
+
+TEST(HeatInput, MistakesAreCaughtByTheSpecification) {
+  expect_in("model.particles.count", message_of("[11, 6, 6]", "[11, -6, 6]"));
+  expect_in("1 node along z; expected at least 2", message_of("[11, 6, 6]", "[11, 6, 1]"));
+  expect_in("model.particles.size", message_of("0.4 mm", "0 mm"));
+  expect_in("model.particles.origin", message_of("-1 mm", ".nan"));
+  expect_in("model.initial_temperature", message_of("293.15 K", "-5 K"));
+  expect_in("did you mean '316L'?", message_of("316L", "316"));
+  expect_in("800 K is not above from = 900 K",
+            message_of("heat_source: none", "heat_source: none\n  table: {from: 900, to: 800}"));
 }
 
 }  // namespace

@@ -129,8 +129,8 @@ TEST(HeatModel, InteriorOperatorIsConsistent) {
   }
 }
 
-/// With mirrored neighbours a particle at a corner conducts like one inside: the operator on x² cos-like data is exact
-/// for fields that continue evenly; here, the total weight at a corner against the centre's.
+/// A cosine that is even about both faces is an eigenvector of the mirrored operator: the rate over the deviation is
+/// the same at a corner, on a face and inside.
 TEST(HeatModel, MirroredCornerHasTheNeighboursOfTheInterior) {
   HeatCase heat_case;
   heat_case.size = {9.0, 9.0, 9.0};
