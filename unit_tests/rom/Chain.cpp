@@ -6,6 +6,7 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "framework/files/Hdf5.hpp"
 
@@ -77,11 +78,12 @@ Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows)
 
 void Chain::build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const Communicator>& communicator) {
   std::vector<GlobalIndex> sources = mine;
+  std::unordered_set<GlobalIndex> known(mine.begin(), mine.end());
   for (const GlobalIndex id : mine) {
     for (const int offset : offsets) {
       const GlobalIndex other = id + offset;
       if (other < 0 || other >= count_) continue;
-      if (std::find(sources.begin(), sources.end(), other) == sources.end()) sources.push_back(other);
+      if (known.insert(other).second) sources.push_back(other);
     }
   }
   const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
