@@ -82,6 +82,8 @@ std::optional<Unit> find_symbol(std::string_view text) {
 }
 
 std::string nearest_symbol(const std::string& text) {
+  // Any letter is one edit away from another.
+  if (text.size() < 2) return {};
   std::vector<std::string> known;
   for (const Symbol& symbol : symbols()) known.emplace_back(symbol.text);
   for (const Symbol& symbol : symbols()) {
@@ -362,7 +364,9 @@ Quantity parse_quantity(std::string_view text) {
   const std::string_view number = text.substr(0, length);
   std::string_view rest = text.substr(length);
   while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
-  if (length == 0 || (!rest.empty() && std::string_view(".,_:;").find(rest.front()) != std::string_view::npos) ||
+  const bool hexadecimal = number == "0" && !rest.empty() && (rest.front() == 'x' || rest.front() == 'X');
+  if (length == 0 || hexadecimal ||
+      (!rest.empty() && std::string_view(".,_:;").find(rest.front()) != std::string_view::npos) ||
       (!rest.empty() && rest.substr(0, 2) != "1/" && std::isdigit(static_cast<unsigned char>(rest.front())) != 0)) {
     const bool not_finite = is_not_finite(text);
     throw InputError("", fmt::format("{} is not {}", in_quotes(std::string(text)), not_finite ? "finite" : "a number"));

@@ -92,9 +92,7 @@ class TreeBuilder final : public YAML::EventHandler {
       started_ = true;
       return;
     }
-    const auto end = static_cast<std::size_t>(mark.pos);
-    const auto begin = static_cast<std::size_t>(last_.pos);
-    if (text_.substr(begin, end - begin).find("\n---") != std::string::npos) {
+    if (text_.compare(static_cast<std::size_t>(mark.pos), 3, "---") == 0) {
       throw Refusal{mark, "a second document starts here", "one document in a file"};
     }
     throw Refusal{mark, "this line is indented less than the first one", "the keys of a block in the same column"};
@@ -104,7 +102,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     YamlNode node;
     node.location = location(mark);
-    add(std::move(node), anchor, mark, "");
+    add(std::move(node), anchor, "");
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -116,14 +114,14 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     YamlNode node = anchored->second;
     node.location = location(mark);
-    add(std::move(node), 0, mark, "?");
+    add(std::move(node), 0, "?");
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     check_tag(mark, tag);
     check_quotes(mark, tag);
-    add(YamlNode::scalar(value, location(mark)), anchor, mark, tag);
+    add(YamlNode::scalar(value, location(mark)), anchor, tag);
   }
 
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -149,7 +147,6 @@ class TreeBuilder final : public YAML::EventHandler {
   struct Frame {
     YamlNode node;
     YAML::anchor_t anchor;
-    YAML::Mark mark;
     std::vector<YamlNode> merges;
     bool has_key = false;
     bool usable_key = false;
@@ -188,22 +185,19 @@ class TreeBuilder final : public YAML::EventHandler {
     check_tag(mark, tag);
     if (frames_.size() == deepest) throw Refusal{mark, fmt::format("more than {} levels of blocks", deepest), {}};
     node.location = location(mark);
-    last_ = mark;
     Frame frame;
     frame.node = std::move(node);
     frame.anchor = anchor;
-    frame.mark = mark;
     frames_.push_back(std::move(frame));
   }
 
   void close() {
     Frame frame = std::move(frames_.back());
     frames_.pop_back();
-    add(std::move(frame.node), frame.anchor, frame.mark, "");
+    add(std::move(frame.node), frame.anchor, "");
   }
 
-  void add(YamlNode node, YAML::anchor_t anchor, const YAML::Mark& mark, const std::string& tag) {
-    last_.pos = std::max(last_.pos, mark.pos);
+  void add(YamlNode node, YAML::anchor_t anchor, const std::string& tag) {
     if (anchor != 0) anchors_[anchor] = node;
     if (frames_.empty()) {
       root_ = std::move(node);
@@ -276,7 +270,6 @@ class TreeBuilder final : public YAML::EventHandler {
   const Location& origin_;
   Mistakes& mistakes_;
   bool started_ = false;
-  YAML::Mark last_;
   std::size_t aliased_ = 0;
   YamlNode root_;
   std::vector<Frame> frames_;

@@ -64,6 +64,10 @@ class EntryBuilder {
   /// For a component: the name of the type to take when the key is left out.
   EntryBuilder& defaults_to(Entry::Value value);
   EntryBuilder& defaults_to(const char* value) { return defaults_to(Entry::Value(std::string(value))); }
+  // Without these a literal 0 would be a null `const char*`.
+  EntryBuilder& defaults_to(int value) { return defaults_to(Entry::Value(value)); }
+  EntryBuilder& defaults_to(double value) { return defaults_to(Entry::Value(value)); }
+  EntryBuilder& defaults_to(bool value) { return defaults_to(Entry::Value(value)); }
   /// May be left out; the checked list then lacks the key.
   EntryBuilder& optional();
 

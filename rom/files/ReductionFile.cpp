@@ -73,8 +73,8 @@ SampleMesh ReductionFile::sample_mesh() const {
   mesh.rows.assign(rows.values.begin(), rows.values.end());
   mesh.sources = ParticleTable::read(group, "sources", components_, basis_rank_);
   mesh.queries = ParticleTable::read(window().group("queries"), "particles", components_, basis_rank_);
-  mesh.gappy_operator = group.reals(
-      "gappy_operator", {static_cast<std::size_t>(residual_rank()), mesh.rows.size() * components_});
+  mesh.gappy_operator =
+      group.reals("gappy_operator", {static_cast<std::size_t>(residual_rank()), mesh.rows.size() * components_});
   mesh.sigma_min = group.real("sigma_min");
   mesh.condition = group.real("condition");
   return mesh;

@@ -45,7 +45,8 @@ class Refusal : public testing::Test {
   }
 
   /// What opening says for a method and an input; changes are made to the checked input itself.
-  std::string opening(const std::string& method, const std::function<void(Teuchos::ParameterList&)>& change = {}) const {
+  std::string opening(const std::string& method,
+                      const std::function<void(Teuchos::ParameterList&)>& change = {}) const {
     Case values = values_;
     values.method = method;
     Teuchos::ParameterList input = test::input_of(values);
@@ -92,36 +93,38 @@ TEST_F(Refusal, AnotherModel) {
 }
 
 TEST_F(Refusal, AnotherModelInManyEntries) {
-  EXPECT_EQ(opening("gnat",
-                    [](Teuchos::ParameterList& input) {
-                      Teuchos::ParameterList& model = input.sublist("model");
-                      model.set("count", 61);
-                      model.set("diffusion", 20.0);
-                      model.set("reaction", 1.0);
-                      model.set("colour", std::string("red"));
-                      model.set("power", 1.0);
-                    }),
-            file_ +
-                ": belongs to another model: model.count: the reduction has '60', this input '61'; model.diffusion: the "
-                "reduction has '30', this input '20'; model.reaction: the reduction has '2', this input '1'; and 1 more; "
-                "expected the model it was trained for; or train again");
-  EXPECT_EQ(opening("gnat",
-                    [](Teuchos::ParameterList& input) { input.sublist("model").set("colour", std::string("red")); }),
-            file_ +
-                ": belongs to another model: model.colour: the reduction has none, this input 'red'; expected the model "
-                "it was trained for; or train again");
+  EXPECT_EQ(
+      opening("gnat",
+              [](Teuchos::ParameterList& input) {
+                Teuchos::ParameterList& model = input.sublist("model");
+                model.set("count", 61);
+                model.set("diffusion", 20.0);
+                model.set("reaction", 1.0);
+                model.set("colour", std::string("red"));
+                model.set("power", 1.0);
+              }),
+      file_ +
+          ": belongs to another model: model.count: the reduction has '60', this input '61'; model.diffusion: the "
+          "reduction has '30', this input '20'; model.reaction: the reduction has '2', this input '1'; and 1 more; "
+          "expected the model it was trained for; or train again");
+  EXPECT_EQ(
+      opening("gnat", [](Teuchos::ParameterList& input) { input.sublist("model").set("colour", std::string("red")); }),
+      file_ +
+          ": belongs to another model: model.colour: the reduction has none, this input 'red'; expected the model "
+          "it was trained for; or train again");
 }
 
 TEST_F(Refusal, AnotherTimeStepping) {
-  EXPECT_EQ(opening("gnat",
-                    [](Teuchos::ParameterList& input) {
-                      input.sublist("time").set("step", 0.001);
-                      input.sublist("time").sublist("scheme").set("type", std::string("bdf2"));
-                    }),
-            file_ +
-                ": was trained with another time stepping: time.step: the reduction has '0.002 s', this input '0.001 s'; "
-                "time.scheme.type: the reduction has 'backward euler', this input 'bdf2'; expected the step and scheme it "
-                "was trained with; or train again");
+  EXPECT_EQ(
+      opening("gnat",
+              [](Teuchos::ParameterList& input) {
+                input.sublist("time").set("step", 0.001);
+                input.sublist("time").sublist("scheme").set("type", std::string("bdf2"));
+              }),
+      file_ +
+          ": was trained with another time stepping: time.step: the reduction has '0.002 s', this input '0.001 s'; "
+          "time.scheme.type: the reduction has 'backward euler', this input 'bdf2'; expected the step and scheme it "
+          "was trained with; or train again");
 }
 
 TEST_F(Refusal, AMissingFile) {
@@ -179,10 +182,10 @@ TEST_F(Refusal, AMissingDataset) {
 
 TEST_F(Refusal, AWrongRank) {
   spoil([](hdf5::File& file) { file.group("windows").group("0").group("basis").attribute("rank", 11); });
-  EXPECT_EQ(opening("lspg"),
-            file_ + ": /windows/0/basis/modes: has 10 columns, reference has 1; expected 11 and 1");
-  EXPECT_EQ(opening("gnat").rfind(file_ + ": /windows/0/sample_mesh/modes: has shape 34 × 10; expected shape 34 × 11", 0),
-            0u);
+  EXPECT_EQ(opening("lspg"), file_ + ": /windows/0/basis/modes: has 10 columns, reference has 1; expected 11 and 1");
+  EXPECT_EQ(
+      opening("gnat").rfind(file_ + ": /windows/0/sample_mesh/modes: has shape 34 × 10; expected shape 34 × 11", 0),
+      0u);
 }
 
 TEST_F(Refusal, ASampledModelThatIsNotTheMeshs) {
@@ -197,16 +200,20 @@ TEST_F(Refusal, ASampledModelThatIsNotTheMeshs) {
 TEST_F(Refusal, TrainingThatAsksForTooMuch) {
   Case greedy = values_;
   greedy.samples = 5;
-  EXPECT_EQ(message([&] { train(greedy); }),
-            "reduction.sampling.samples: 5 particles with 1 component each cannot determine 12 residual modes; expected "
-            "at least 12");
+  EXPECT_EQ(
+      message([&] { train(greedy); }),
+      "reduction.sampling.samples: 5 particles with 1 component each cannot determine 12 residual modes; expected "
+      "at least 12");
   greedy.samples = 100;
   EXPECT_EQ(message([&] { train(greedy); }),
             "reduction.sampling.samples: 100 particles are asked for; expected at most the model's 60");
   Case wide = values_;
   wide.basis_rank = 50;
-  EXPECT_EQ(message([&] { train(wide); }).rfind("reduction.basis.rank: 50 basis vectors are asked for, but of 40 "
-                                                "snapshots only ", 0), 0u);
+  EXPECT_EQ(message([&] { train(wide); })
+                .rfind("reduction.basis.rank: 50 basis vectors are asked for, but of 40 "
+                       "snapshots only ",
+                       0),
+            0u);
   // The earlier file is still whole.
   EXPECT_EQ(opening("gnat"), "nothing was thrown");
 }
@@ -215,10 +222,10 @@ TEST_F(Refusal, AFileNamedByTheMethodIsTaken) {
   world()->barrier();
   if (world()->getRank() == 0) std::filesystem::rename(file_, folder_ / "other.h5");
   world()->barrier();
-  EXPECT_EQ(opening("gnat", [this](Teuchos::ParameterList& input) {
-              input.sublist("method").set("file", folder_ / "other.h5");
-            }),
-            "nothing was thrown");
+  EXPECT_EQ(
+      opening("gnat",
+              [this](Teuchos::ParameterList& input) { input.sublist("method").set("file", folder_ / "other.h5"); }),
+      "nothing was thrown");
 }
 
 }  // namespace

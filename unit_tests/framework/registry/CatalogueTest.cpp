@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include "framework/input/Units.hpp"
+#include "framework/registry/Nearest.hpp"
+#include "unit_tests/framework/input/TestComponents.hpp"
+
+namespace kiln::test {
+namespace {
+
+TEST(Catalogue, KnowsWhatWasRegistered) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(catalogue::names("test kernel"), (Names{"cubic spline", "wendland c2"}));
+  EXPECT_EQ(catalogue::names("test source"), (Names{"gaussian beam", "uniform"}));
+  EXPECT_EQ(catalogue::names("test watcher"), (Names{"fields", "point probes"}));
+  EXPECT_EQ(catalogue::names("nothing"), Names{});
+  EXPECT_EQ(catalogue::find("test kernel", "wendland c2", "").summary, "Compactly supported polynomial");
+}
+
+TEST(Catalogue, RefusesANameTwice) {
+  Registration again{Kernel::category, "cubic spline", "once more", nullptr, "Again.cpp", 7, {}, {}, {}};
+  const int line = catalogue::find(Kernel::category, "cubic spline", "").line;
+  try {
+    catalogue::add(again);
+    ADD_FAILURE() << "the second registration was taken";
+  } catch (const std::logic_error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("test kernel 'cubic spline' is registered twice: "), std::string::npos) << text;
+    EXPECT_NE(text.find("TestComponents.cpp:" + std::to_string(line) + " and Again.cpp:7"), std::string::npos) << text;
+  }
+  EXPECT_EQ(catalogue::names(Kernel::category).size(), 2u);
+}
+
+TEST(Catalogue, SuggestsTheNearestName) {
+  try {
+    catalogue::find("test kernel", "cubic splien", "model.kernel");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "model.kernel: there is no test kernel 'cubic splien'; expected one of: cubic spline, wendland c2; did "
+        "you mean 'cubic spline'?");
+  }
+}
+
+void expect_coherent_units(const Specification& specification, const std::string& owner) {
+  for (const auto& entry : specification.entries()) {
+    const Unit unit = parse_unit(entry->unit);
+    EXPECT_TRUE(unit.exponent == 0 && unit.factor == 1 && unit.offset == 0)
+        << owner << "." << entry->key << ": " << entry->unit << " is no unit of the SI without a prefix";
+    EXPECT_FALSE(entry->help.empty()) << owner << "." << entry->key;
+    if (entry->nested) expect_coherent_units(*entry->nested, owner + "." + entry->key);
+  }
+}
+
+TEST(Catalogue, AllEntriesHaveHelpAndUnitsOfTheSi) {
+  for (const Registration* registration : catalogue::all()) {
+    expect_coherent_units(registration->specification(), registration->category + " " + registration->name);
+  }
+  expect_coherent_units(run_specification(), "run");
+}
+
+TEST(Nearest, AllowsAThirdOfTheWord) {
+  EXPECT_EQ(nearest("powr", {"width", "power"}), "power");
+  EXPECT_EQ(nearest("wdith", {"width", "power"}), "width");
+  EXPECT_EQ(nearest("POWER", {"power"}), "power");
+  EXPECT_EQ(nearest("xyz", {"width", "power"}), "");
+  EXPECT_EQ(nearest("ab", {"ac"}), "ac");
+  EXPECT_EQ(nearest("ab", {"cd"}), "");
+  EXPECT_EQ(nearest("", {"a"}), "a");
+  EXPECT_EQ(nearest(std::string(100, 'a'), {std::string(100, 'a')}), "");
+}
+
+}  // namespace
+}  // namespace kiln::test
