@@ -60,7 +60,9 @@ class Model {
   /// (∂f/∂u) V: what matrix-free solvers and reductions need. v: sources × components by k; product: rows ×
   /// components by k, overwritten.
   virtual void apply_rate_jacobian(ConstVectorView u, double time, ConstMatrixView v, MatrixView product) const;
-  /// ∂f/∂u as a sparse matrix over rows and sources. The matrix stays the model's and is refilled by the next call.
+  /// ∂f/∂u as a sparse matrix over rows and sources (degree_of_freedom_map of both; its domain is the full rows').
+  /// Every row's graph holds the diagonal. The matrix stays the model's and is refilled by the next call, if possible
+  /// with the same graph.
   virtual Teuchos::RCP<const CrsMatrix> rate_jacobian_matrix(ConstVectorView u, double time) const;
 
   /// The same physics on chosen rows only, with just the sources these need. `rows` holds global particle ids and is

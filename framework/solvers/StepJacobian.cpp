@@ -112,8 +112,8 @@ class SparseJacobian : public KrylovJacobian {
   }
 
   void assemble(double alpha, double gamma) {
-    fill_matrix(alpha, gamma, rate_jacobian_->getLocalMatrixDevice().values,
-                matrix_->getLocalMatrixDevice().values, diagonal_entries_);
+    fill_matrix(alpha, gamma, rate_jacobian_->getLocalMatrixDevice().values, matrix_->getLocalMatrixDevice().values,
+                diagonal_entries_);
     if (!diagonal_.is_null()) matrix_->getLocalDiagCopy(*diagonal_);
     alpha_ = alpha;
     gamma_ = gamma;
@@ -124,8 +124,7 @@ class SparseJacobian : public KrylovJacobian {
   static void fill_matrix(double alpha, double gamma, const ConstValues& rate_jacobian, const Values& values,
                           const Entries& diagonal_entries) {
     Kokkos::parallel_for(
-        "kiln::solvers::scale_rate_jacobian",
-        Kokkos::RangePolicy<ExecutionSpace, std::size_t>(0, values.extent(0)),
+        "kiln::solvers::scale_rate_jacobian", Kokkos::RangePolicy<ExecutionSpace, std::size_t>(0, values.extent(0)),
         KOKKOS_LAMBDA(const std::size_t k) { values(k) = -gamma * rate_jacobian(k); });
     Kokkos::parallel_for(
         "kiln::solvers::add_to_diagonal",

@@ -23,8 +23,7 @@ void combine(double scale_x, const ConstMatrixView& x, double scale_product, con
 
 }  // namespace
 
-void StepOperator::apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, double alpha,
-                         double beta) const {
+void StepOperator::apply(const MultiVector& x, MultiVector& y, Teuchos::ETransp mode, double alpha, double beta) const {
   if (mode != Teuchos::NO_TRANS) throw NotOffered("kiln::StepOperator", "a transposed application");
   const std::size_t columns = x.getNumVectors();
   if (sources_.is_null() || sources_->getNumVectors() != columns) {

@@ -37,10 +37,10 @@ class JacobianAction {
   JacobianForm form_;
   bool taken_ = false;
   double time_ = 0.0;
-  VectorView u_;           ///< sources × components
-  VectorView diagonal_;    ///< rows × components
-  VectorView rate_;        ///< f(u), rows × components
-  VectorView shifted_;     ///< u + εv
+  VectorView u_;         ///< sources × components
+  VectorView diagonal_;  ///< rows × components
+  VectorView rate_;      ///< f(u), rows × components
+  VectorView shifted_;   ///< u + εv
   double largest_u_ = 0.0;
   long long rate_evaluations_ = 0;
 };

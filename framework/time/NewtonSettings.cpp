@@ -10,11 +10,11 @@
 namespace kiln {
 namespace {
 
-constexpr std::array<std::pair<JacobianForm, const char*>, 4> forms{{{JacobianForm::diagonal, "diagonal"},
-                                                                     {JacobianForm::sparse, "sparse"},
-                                                                     {JacobianForm::matrix_free, "matrix free"},
-                                                                     {JacobianForm::finite_difference,
-                                                                      "finite difference"}}};
+constexpr std::array<std::pair<JacobianForm, const char*>, 4> forms{
+    {{JacobianForm::diagonal, "diagonal"},
+     {JacobianForm::sparse, "sparse"},
+     {JacobianForm::matrix_free, "matrix free"},
+     {JacobianForm::finite_difference, "finite difference"}}};
 
 std::vector<std::string> form_names() {
   std::vector<std::string> names;

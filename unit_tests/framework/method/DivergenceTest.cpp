@@ -53,13 +53,15 @@ TEST(Divergence, ANanNamesItsFirstParticleOnEveryRank) {
 TEST(Divergence, TheTimeIsTheStepsOwn) {
   FullOrder method(std::make_shared<Troubled>(std::vector<GlobalIndex>{3}, std::nan("")),
                    newton(JacobianForm::diagonal, 1e-6));
-  expect_in(divergence_text([&] { run(method, "backward euler", 0.1, 5); }), {"t = 0.3 s, particle 3 at (1.5, 0, 0) m"});
+  expect_in(divergence_text([&] { run(method, "backward euler", 0.1, 5); }),
+            {"t = 0.3 s, particle 3 at (1.5, 0, 0) m"});
 }
 
 TEST(Divergence, AnInfinityIsFound) {
   FullOrder method(std::make_shared<Troubled>(std::vector<GlobalIndex>{22}, -INFINITY),
                    newton(JacobianForm::diagonal, 1e-6));
-  expect_in(divergence_text([&] { run(method, "backward euler", 0.1, 5); }), {"particle 22 at (11, 0, 0) m", "-inf K/s"});
+  expect_in(divergence_text([&] { run(method, "backward euler", 0.1, 5); }),
+            {"particle 22 at (11, 0, 0) m", "-inf K/s"});
 }
 
 TEST(Divergence, AnOverflowingNormNamesTheLargestResidual) {

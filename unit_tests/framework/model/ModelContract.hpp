@@ -113,7 +113,8 @@ inline void check_sampled(const Model& model, const Model& sampled, const std::v
   const auto host = Kokkos::create_mirror_view(us);
   for (LocalIndex i = 0; i < local_size(*sampled.sources()); ++i) {
     const auto state = states.find(sampled.sources()->getGlobalElement(i));
-    ASSERT_NE(state, states.end()) << "source " << sampled.sources()->getGlobalElement(i) << " is none of the full model";
+    ASSERT_NE(state, states.end()) << "source " << sampled.sources()->getGlobalElement(i)
+                                   << " is none of the full model";
     std::copy(state->second.begin(), state->second.end(), host.data() + i * components);
   }
   Kokkos::deep_copy(us, host);
@@ -192,7 +193,8 @@ inline std::vector<std::string> check_jacobian_against_finite_differences(const 
   const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * (largest_u > 0.0 ? largest_u : 1.0);
   const auto state = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), u);
   const VectorView shifted("kiln::test::shifted", sources);
-  const VectorView plus("kiln::test::plus", rows), minus("kiln::test::minus", rows), product("kiln::test::product", rows);
+  const VectorView plus("kiln::test::plus", rows), minus("kiln::test::minus", rows),
+      product("kiln::test::product", rows);
 
   const auto central = [&](const auto& direction) {
     const auto host = Kokkos::create_mirror_view(shifted);

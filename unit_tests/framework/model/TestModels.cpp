@@ -95,9 +95,7 @@ DiffusionChain::DiffusionChain(const DiffusionChain& full, const std::vector<Glo
 void DiffusionChain::set_rows(const std::vector<GlobalIndex>& rows) {
   parameters_.add("conduction", "1/s", &settings_.conduction);
   parameters_.add("reaction", "1/(K^2 s)", &settings_.reaction);
-  const auto inside = [&](GlobalIndex i) {
-    return std::clamp<GlobalIndex>(i, 0, settings_.particles - 1);
-  };
+  const auto inside = [&](GlobalIndex i) { return std::clamp<GlobalIndex>(i, 0, settings_.particles - 1); };
   std::vector<GlobalIndex> wanted;
   for (GlobalIndex i : rows) wanted.insert(wanted.end(), {inside(i - 1), inside(i + 1)});
   sources_ = sources_of(rows, wanted, rows_->getComm());

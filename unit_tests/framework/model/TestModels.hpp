@@ -10,8 +10,8 @@
 /// Small models that tests of the framework solve. Registered in the test programs that link TestModels.cpp.
 namespace kiln {
 
-/// u' = −2 s t u² with u(0) = 1 and the solution 1/(1 + s t²), s = `strength`: nonlinear and time-dependent, so that a scheme's
-/// times count. One particle on rank 0; other ranks are empty.
+/// u' = −2 s t u² with u(0) = 1 and the solution 1/(1 + s t²), s = `strength`: nonlinear and time-dependent, so that a
+/// scheme's times count. One particle on rank 0; other ranks are empty.
 class RationalDecay : public Model {
  public:
   static Specification specification();
@@ -31,8 +31,9 @@ class RationalDecay : public Model {
   double strength_ = 1.0;
 };
 
-/// A line of particles, u_i' = k (u_{i−1} − 2 u_i + u_{i+1}) − r u_i³ + q_i (1 + sin 3t), insulated at its ends: rows in
-/// blocks over the ranks, neighbours of other ranks as sources, a symmetric Jacobian in all forms. It samples itself.
+/// A line of particles, u_i' = k (u_{i−1} − 2 u_i + u_{i+1}) − r u_i³ + q_i (1 + sin 3t), insulated at its ends: rows
+/// in blocks over the ranks, neighbours of other ranks as sources, a symmetric Jacobian in all forms. It samples
+/// itself.
 class DiffusionChain : public Model {
  public:
   struct Settings {
@@ -67,8 +68,8 @@ class DiffusionChain : public Model {
   mutable Teuchos::RCP<CrsMatrix> matrix_;
 };
 
-/// A ring of pendulums, θ' = ω, ω' = −g sin θ + c (θ_{i−1} − 2 θ_i + θ_{i+1}): two components a particle and nothing but
-/// `rate`.
+/// A ring of pendulums, θ' = ω, ω' = −g sin θ + c (θ_{i−1} − 2 θ_i + θ_{i+1}): two components a particle and nothing
+/// but `rate`.
 class PendulumRing : public Model {
  public:
   static Specification specification();
