@@ -36,20 +36,25 @@ AtomicPath::~AtomicPath() {
   if (!committed_ && communicator_->getRank() == 0) std::remove(temporary_.c_str());
 }
 
-void AtomicPath::commit() {
+void AtomicPath::commit() { commit(true); }
+void AtomicPath::commit_unsynchronised() { commit(false); }
+
+void AtomicPath::commit(bool synchronised) {
   communicator_->barrier();
-  on_root(*communicator_, target_.string(), [this]() -> std::optional<Fault> {
-    if (const int error = synchronise(temporary_, O_RDONLY)) return system_fault("written", error);
+  on_root(*communicator_, target_.string(), [&]() -> std::optional<Fault> {
+    const auto disk = [synchronised](const std::filesystem::path& path, int flags) {
+      return synchronised ? synchronise(path, flags) : 0;
+    };
+    if (const int error = disk(temporary_, O_RDONLY)) return system_fault("written", error);
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return system_fault("written", errno);
-    if (const int error = synchronise(folder_of(target_), O_RDONLY | O_DIRECTORY))
-      return system_fault("written", error);
+    if (const int error = disk(folder_of(target_), O_RDONLY | O_DIRECTORY)) return system_fault("written", error);
     return std::nullopt;
   });
   committed_ = true;
 }
 
 void write_atomically(const std::filesystem::path& target, const std::string& text,
-                      const Teuchos::RCP<const Communicator>& communicator) {
+                      const Teuchos::RCP<const Communicator>& communicator, bool synchronised) {
   AtomicPath path(target, communicator);
   on_root(*communicator, target.string(), [&]() -> std::optional<Fault> {
     errno = 0;
@@ -59,7 +64,11 @@ void write_atomically(const std::filesystem::path& target, const std::string& te
     if (!file) return system_fault("written", errno);
     return std::nullopt;
   });
-  path.commit();
+  if (synchronised) {
+    path.commit();
+  } else {
+    path.commit_unsynchronised();
+  }
 }
 
 }  // namespace kiln

@@ -76,9 +76,9 @@ class Group {
   void create_reals(const std::string& name, const std::vector<std::size_t>& shape, double fill);
   void create_integers(const std::string& name, const std::vector<std::size_t>& shape, long long fill);
   void create_bytes(const std::string& name, const std::vector<std::size_t>& shape, unsigned char fill);
-  /// A one-dimensional dataset that shows row `row` of the two-dimensional dataset of reals at the absolute path
-  /// `dataset` and stores nothing itself (HDF5's virtual layout).
-  void create_row_view(const std::string& name, const std::string& dataset, std::size_t row);
+  /// One-dimensional datasets "0", "1", … in this group, each of which shows a row of the two-dimensional dataset of
+  /// reals at the absolute path `dataset` and stores nothing itself (HDF5's virtual layout).
+  void create_row_views(const std::string& dataset);
   /// A second name for the object at the absolute path `target`.
   void link(const std::string& name, const std::string& target);
   /// Writes this rank's block of a dataset; blocks of ranks may not overlap and may be empty. values: row-major.

@@ -79,10 +79,7 @@ void RunFile::create(ConstPositionView positions) {
     file_.attribute_of(field.name, "unit", field.unit);
   }
   hdf5::Group views = file_.create_group("frame");
-  for (std::size_t frame = 0; frame < frames; ++frame) {
-    hdf5::Group view = views.create_group(std::to_string(frame));
-    for (const Field& field : contents_.fields) view.create_row_view(field.name, "/" + field.name, frame);
-  }
+  for (const Field& field : contents_.fields) views.create_group(field.name).create_row_views("/" + field.name);
   create_vtkhdf();
 }
 
@@ -173,7 +170,6 @@ void RunFile::write(int step, double time, ConstVectorView u) {
   const std::size_t count = root_count();
   file_.write_block("step", {frame}, {count}, std::vector<long long>(count, step));
   file_.write_block("time", {frame}, {count}, std::vector<double>(count, time));
-  file_.flush();
   written_.push_back({frame, time});
   if (written_.size() >= next_xdmf_ || frame + 1 == contents_.steps.size()) write_xdmf();
 }
@@ -181,7 +177,8 @@ void RunFile::write(int step, double time, ConstVectorView u) {
 void RunFile::write_xdmf() {
   // Its length grows with the frames: writing it after each of very many would take longer than the frames.
   next_xdmf_ = written_.size() + 1 + written_.size() / 16;
-  write_atomically(folder_ / "run.xdmf", xdmf("run.h5", order_.rows(), contents_.fields, written_), communicator_);
+  write_atomically(folder_ / "run.xdmf", xdmf("run.h5", order_.rows(), contents_.fields, written_), communicator_,
+                   false);
 }
 
 }  // namespace kiln

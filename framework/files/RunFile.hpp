@@ -21,7 +21,7 @@ namespace kiln {
 /// | `/position` | n × 3 | m |
 /// | `/time`, `/step` | frames | s; NaN and −1 for a frame that is not written yet |
 /// | `/FIELD` | frames × n | one for each component of the state, with its unit |
-/// | `/frame/K/FIELD` | n | row K of `/FIELD`; a view, for readers of XDMF |
+/// | `/frame/FIELD/K` | n | row K of `/FIELD`; a view, for readers of XDMF |
 /// | `/VTKHDF` | | particles and the newest frame, for VTK ≥ 9.1 |
 ///
 /// Each dataset has an attribute `unit`; the root's attributes are the run's provenance. All space is taken at the

@@ -57,7 +57,7 @@ std::string xdmf(const std::string& file, std::size_t particles, const std::vect
                      "        <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n"
                      "          <Information Name=\"unit\" Value=\"{}\"/>\n          {}\n        </Attribute>\n",
                      escaped(field.name), escaped(field.unit),
-                     data_item(count, "Float", fmt::format("{}:/frame/{}/{}", file, frame.frame, field.name)));
+                     data_item(count, "Float", fmt::format("{}:/frame/{}/{}", file, field.name, frame.frame)));
     }
     text += "      </Grid>\n";
   }

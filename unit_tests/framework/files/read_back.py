@@ -37,7 +37,7 @@ def check_h5py(path):
             expected = np.array([values(step) for step in STEPS] + [np.full(PARTICLES, np.nan)])
             equal(file[name], expected, name)
             for k in range(4):
-                equal(file[f"frame/{k}/{name}"], expected[k], f"frame/{k}/{name}")
+                equal(file[f"frame/{name}/{k}"], expected[k], f"frame/{name}/{k}")
         units = [file[name].attrs["unit"] for name in ("temperature", "enthalpy", "position", "time")]
         equal(units, ["K", "J/kg", "m", "s"], "units")
         equal(file.attrs["input"], 'a: <1 & "2">', "input")
