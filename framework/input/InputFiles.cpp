@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Teuchos_CommHelpers.hpp>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -26,10 +27,14 @@ InputFiles::Contents contents(const std::string& path) {
   std::string trouble = why_unreadable(path);
   if (!trouble.empty()) return {{}, std::move(trouble)};
   std::ifstream stream(path, std::ios::binary);
-  std::string text(InputFiles::longest + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::string text;
+  std::array<char, 65536> part{};
+  // A device has no length to ask for beforehand.
+  while (stream && text.size() <= InputFiles::longest) {
+    stream.read(part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (stream.bad()) return {{}, "the file cannot be read to its end"};
-  text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > InputFiles::longest)
     return {{}, fmt::format("the file is longer than {} MiB", InputFiles::longest >> 20)};
   return {std::move(text), {}};

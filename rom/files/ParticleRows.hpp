@@ -15,11 +15,11 @@ MatrixView unfold(const MatrixView& particles, int components);
 
 /// Some particles with all that reduced methods need of them, the same on every rank.
 struct ParticleTable {
-  std::vector<GlobalIndex> ids;       ///< ascending
+  std::vector<GlobalIndex> ids;  ///< ascending
   int components = 1;
-  std::vector<double> positions;      ///< x, y, z of one particle after the other, in m
-  hdf5::Array<double> reference;      ///< ids × components
-  hdf5::Array<double> modes;          ///< ids × (M · components), folded
+  std::vector<double> positions;  ///< x, y, z of one particle after the other, in m
+  hdf5::Array<double> reference;  ///< ids × components
+  hdf5::Array<double> modes;      ///< ids × (M · components), folded
 
   /// From distributed data: rows of `map`, each particle on one rank. `ids` ascending. Collective.
   static ParticleTable gather(const std::vector<GlobalIndex>& ids, const Map& map, ConstPositionView positions,

@@ -18,9 +18,9 @@ struct Reduction {
   const Pod& basis;
   const Pod& residual_basis;
   const GappyOperator& gappy_operator;
-  const Model& sample;                ///< the model on the sampled particles alone
-  std::vector<GlobalIndex> sampled;   ///< ids, ascending
-  std::vector<GlobalIndex> queries;   ///< ids, ascending
+  const Model& sample;               ///< the model on the sampled particles alone
+  std::vector<GlobalIndex> sampled;  ///< ids, ascending
+  std::vector<GlobalIndex> queries;  ///< ids, ascending
 };
 
 /// Writes a reduction file: whole, or not at all. It holds everything an online run needs:

@@ -4,11 +4,25 @@
 
 #include <Tpetra_Map.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/Together.hpp"
 #include "rom/files/ReductionIdentity.hpp"
 
 namespace kiln {
+namespace {
+
+hdf5::File open(const std::filesystem::path& path, const Teuchos::RCP<const Communicator>& communicator) {
+  on_root(*communicator, path.string(), [&path]() -> std::optional<Fault> {
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) return std::nullopt;
+    return Fault{"", "there is no such file", "a reduction; `kiln train` writes it"};
+  });
+  return hdf5::File::read(path.string(), communicator);
+}
+
+}  // namespace
 
 std::filesystem::path ReductionFile::path(const Teuchos::ParameterList& input) {
   const Teuchos::ParameterList& method = input.sublist("method");
@@ -17,7 +31,7 @@ std::filesystem::path ReductionFile::path(const Teuchos::ParameterList& input) {
 }
 
 ReductionFile::ReductionFile(const Teuchos::ParameterList& input, const Teuchos::RCP<const Communicator>& communicator)
-    : file_(hdf5::File::read(path(input).string(), communicator)) {
+    : file_(open(path(input), communicator)) {
   reduction_identity::require_format(file_);
   reduction_identity::require_model(file_, input.sublist("model"));
   const std::vector<std::string> windows = file_.group("windows").names();
@@ -59,8 +73,8 @@ SampleMesh ReductionFile::sample_mesh() const {
   mesh.rows.assign(rows.values.begin(), rows.values.end());
   mesh.sources = ParticleTable::read(group, "sources", components_, basis_rank_);
   mesh.queries = ParticleTable::read(window().group("queries"), "particles", components_, basis_rank_);
-  mesh.gappy_operator = group.reals(
-      "gappy_operator", {static_cast<std::size_t>(residual_rank()), mesh.rows.size() * components_});
+  mesh.gappy_operator =
+      group.reals("gappy_operator", {static_cast<std::size_t>(residual_rank()), mesh.rows.size() * components_});
   mesh.sigma_min = group.real("sigma_min");
   mesh.condition = group.real("condition");
   return mesh;
@@ -75,10 +89,14 @@ std::unique_ptr<AffineBasis> basis_at(const Map& particles, const std::vector<co
   const std::size_t count = particles.getMyGlobalIndices().extent(0);
   VectorView reference("kiln::rom::reference", count * components);
   MatrixView values("kiln::rom::modes", count * components, modes);
+  std::optional<Fault> fault;
   for (std::size_t i = 0; i < count; ++i) {
     const GlobalIndex id = particles.getGlobalElement(static_cast<LocalIndex>(i));
     const auto table = std::find_if(tables.begin(), tables.end(), [id](const auto* t) { return t->find(id) >= 0; });
-    if (table == tables.end()) throw FileError(file, "", fmt::format("holds no basis row of particle {}", id));
+    if (table == tables.end()) {
+      fault = Fault{"", fmt::format("holds no basis row of particle {}", id), {}};
+      break;
+    }
     const std::size_t row = (*table)->find(id);
     for (std::size_t c = 0; c < components; ++c) {
       reference(i * components + c) = (*table)->reference.values[row * components + c];
@@ -87,6 +105,7 @@ std::unique_ptr<AffineBasis> basis_at(const Map& particles, const std::vector<co
       }
     }
   }
+  throw_together(*particles.getComm(), file, fault);
   return std::make_unique<AffineBasis>(reference, values);
 }
 

@@ -53,7 +53,7 @@ class ReductionFile {
 };
 
 /// An affine basis on chosen particles of one or more tables; a particle is taken from the first table that has it.
-/// Throws FileError naming `file` for a particle in none of them.
+/// Throws FileError naming `file` for a particle in none of them. Collective over the map's ranks.
 std::unique_ptr<AffineBasis> basis_at(const Map& particles, const std::vector<const ParticleTable*>& tables,
                                       const std::string& file);
 

@@ -13,8 +13,8 @@ struct YamlDifference {
 };
 
 /// Entries that differ between two texts of `to_yaml`, in the order of the first one, then those only the second has.
-/// `prefix` stands before each path. Entries at the paths of `except`, or above one (a list whose numbers are named one by
-/// one), are left out.
+/// `prefix` stands before each path. Entries at the paths of `except`, or above one (a list whose numbers are named one
+/// by one), are left out.
 std::vector<YamlDifference> differences(const std::string& first, const std::string& second, const std::string& prefix,
                                         const std::vector<std::string>& except);
 

@@ -6,8 +6,8 @@
 
 #include "rom/linear_algebra/Dense.hpp"
 
-// Divide-and-conquer drivers that Teuchos::LAPACK lacks; an order of magnitude faster than SYEV and GESVD at thousands of
-// columns.
+// Divide-and-conquer drivers that Teuchos::LAPACK lacks; an order of magnitude faster than SYEV and GESVD at thousands
+// of columns.
 extern "C" {
 void dsyevd_(const char* job, const char* triangle, const int* n, double* a, const int* lda, double* values,
              double* work, const int* work_size, int* integer_work, const int* integer_work_size, int* info);
@@ -21,9 +21,7 @@ namespace {
 
 using Lapack = Teuchos::LAPACK<int, double>;
 
-int leading_dimension(const ConstMatrixView& a) {
-  return std::max<int>(1, std::max<int>(a.extent(0), a.stride(1)));
-}
+int leading_dimension(const ConstMatrixView& a) { return std::max<int>(1, std::max<int>(a.extent(0), a.stride(1))); }
 
 void require(int info, const char* routine) {
   if (info != 0) throw std::runtime_error(std::string("LAPACK ") + routine + " returned " + std::to_string(info));

@@ -86,8 +86,7 @@ Pod pod(const Snapshots& snapshots, const PodSettings& settings, const Communica
   const MatrixView matrix = snapshots.matrix();
   std::optional<Tsqr> factors;
   if (settings.algorithm == PodSettings::Algorithm::tsqr) factors.emplace(matrix, communicator);
-  Small small =
-      factors ? small_half_of_tsqr(*factors, communicator) : small_half_of_gram(matrix, communicator);
+  Small small = factors ? small_half_of_tsqr(*factors, communicator) : small_half_of_gram(matrix, communicator);
   dense::broadcast(communicator, small.singular_values.data(), small.singular_values.size());
   dense::broadcast(communicator, small.to_modes.data(), small.to_modes.size());
 

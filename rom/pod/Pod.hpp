@@ -10,8 +10,8 @@ struct Pod {
   MatrixView modes;                     ///< Φ: this rank's rows × rank, orthonormal over all ranks
   std::vector<double> singular_values;  ///< all of S, descending; round-off below Truncation::independent
   Truncation truncation;
-  double orthogonality;     ///< largest entry of |ΦᵀΦ − I|
-  bool reorthogonalised;    ///< whether Φ had lost more orthogonality than 1e-10 and was orthonormalised again
+  double orthogonality;   ///< largest entry of |ΦᵀΦ − I|
+  bool reorthogonalised;  ///< whether Φ had lost more orthogonality than 1e-10 and was orthonormalised again
 };
 
 /// Collective over the ranks that hold the snapshots' rows. `tsqr` overwrites the snapshots; `gram` leaves them. Signs

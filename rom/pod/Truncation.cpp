@@ -30,7 +30,8 @@ Specification PodSettings::specification() {
   s.integer("rank", "number of basis vectors; either this or energy").at_least(1).optional();
   s.real("energy", "fraction of the statistical energy to keep, e.g. 99.999 %").above(0).at_most(1).optional();
   s.choice("energy_of", "what the energy sums up", {squared, plain}).defaults_to(squared);
-  s.choice("algorithm", "gram: eigenvectors of the snapshots' Gram matrix; tsqr: parallel QR, for small singular values",
+  s.choice("algorithm",
+           "gram: eigenvectors of the snapshots' Gram matrix; tsqr: parallel QR, for small singular values",
            {"gram", "tsqr"})
       .defaults_to("gram");
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
@@ -42,7 +43,8 @@ Specification PodSettings::specification() {
 }
 
 double PodSettings::resolution(std::size_t snapshots) const {
-  const double round_off = std::numeric_limits<double>::epsilon() * static_cast<double>(std::max<std::size_t>(10, snapshots));
+  const double round_off =
+      std::numeric_limits<double>::epsilon() * static_cast<double>(std::max<std::size_t>(10, snapshots));
   return algorithm == Algorithm::gram ? std::sqrt(round_off) : 10.0 * round_off;
 }
 
@@ -57,11 +59,12 @@ Truncation truncate(const std::vector<double>& singular_values, const PodSetting
                      "snapshots that differ from the reference state");
   }
   if (settings.rank && *settings.rank > independent) {
-    throw InputError(settings.path + ".rank",
-                     fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "
-                                 "values above {:.1e} of the largest)",
-                                 *settings.rank, singular_values.size(), independent, resolution),
-                     fmt::format("a rank of at most {}", independent));
+    throw InputError(
+        settings.path + ".rank",
+        fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "
+                    "values above {:.1e} of the largest)",
+                    *settings.rank, singular_values.size(), independent, resolution),
+        fmt::format("a rank of at most {}", independent));
   }
   const auto weight = [&settings](double sigma) {
     return settings.energy_of == PodSettings::EnergyOf::singular_values ? sigma : sigma * sigma;

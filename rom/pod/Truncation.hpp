@@ -27,8 +27,8 @@ struct PodSettings {
   explicit PodSettings(const Teuchos::ParameterList& list);
   static Specification specification();
 
-  /// Of m snapshots, singular values at or below this fraction of the largest are round-off of the algorithm: √(m ε) for
-  /// gram, whose eigenvalues σ² carry errors of m ε σ_1², and 10 m ε for tsqr; m at least 10.
+  /// Of m snapshots, singular values at or below this fraction of the largest are round-off of the algorithm: √(m ε)
+  /// for gram, whose eigenvalues σ² carry errors of m ε σ_1², and 10 m ε for tsqr; m at least 10.
   double resolution(std::size_t snapshots) const;
 };
 
@@ -39,8 +39,8 @@ struct Truncation {
   double energy;    ///< fraction kept, of the independent ones' Σσ² or Σσ
 };
 
-/// Smallest rank that keeps the energy asked for, or the rank asked for. `singular_values` descend. Throws InputError if
-/// nothing is independent (all snapshots zero) or a rank above `independent` is asked for.
+/// Smallest rank that keeps the energy asked for, or the rank asked for. `singular_values` descend. Throws InputError
+/// if nothing is independent (all snapshots zero) or a rank above `independent` is asked for.
 Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings);
 
 }  // namespace kiln

@@ -19,7 +19,8 @@ Tsqr::Tsqr(MatrixView a, const Communicator& communicator) : local_(a), rows_(a.
 
   // Each rank's block of rows added to zeros: a gather in the one collective that Teuchos has for it.
   MatrixView stack("kiln::rom::stacked R", total, columns);
-  for (std::size_t j = 0; j < columns; ++j) std::copy_n(local_r.data() + j * mine, mine, stack.data() + j * total + first);
+  for (std::size_t j = 0; j < columns; ++j)
+    std::copy_n(local_r.data() + j * mine, mine, stack.data() + j * total + first);
   dense::sum_over_ranks(communicator, stack.data(), stack.size());
 
   const std::size_t rank_of_r = std::min(total, columns);

@@ -5,8 +5,8 @@
 namespace kiln {
 
 /// Thin QR of a tall matrix whose rows are spread over ranks: a Householder QR on each rank, then one of the ranks'
-/// stacked R (Demmel, Grigori, Hoemmen, Langou 2012, with a flat tree). Ranks may hold fewer rows than there are columns,
-/// or none.
+/// stacked R (Demmel, Grigori, Hoemmen, Langou 2012, with a flat tree). Ranks may hold fewer rows than there are
+/// columns, or none.
 class Tsqr {
  public:
   /// Overwrites `a`, this rank's rows, and keeps it. Collective.

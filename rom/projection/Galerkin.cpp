@@ -12,7 +12,8 @@ class Galerkin : public PetrovGalerkin {
                        NewtonSettings(context.input.sublist("time").sublist("newton"))) {}
 };
 
-KILN_REGISTER(Method, Galerkin, "galerkin", "Galerkin projection on the whole domain: the residual is orthogonal to the basis");
+KILN_REGISTER(Method, Galerkin, "galerkin",
+              "Galerkin projection on the whole domain: the residual is orthogonal to the basis");
 
 }  // namespace
 }  // namespace kiln

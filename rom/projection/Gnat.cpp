@@ -3,8 +3,10 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/Together.hpp"
 #include "framework/model/MaskedModel.hpp"
 #include "framework/registry/Registry.hpp"
 #include "rom/projection/FullSize.hpp"
@@ -24,16 +26,18 @@ std::shared_ptr<Model> sample_mesh_model(const Method::Context& context, const R
   return sampled_or_masked(std::shared_ptr<const Model>(Registry<Model>::create(block, model_context)), mesh.rows);
 }
 
-/// The columns of A that belong to this rank's rows.
+/// The columns of A that belong to this rank's rows. Collective.
 MatrixView local_columns(const SampleMesh& mesh, const Map& rows, std::size_t components, const std::string& file) {
   const std::size_t modes = mesh.gappy_operator.shape[0], width = mesh.gappy_operator.shape[1];
   const std::size_t count = rows.getMyGlobalIndices().extent(0);
   MatrixView result("kiln::rom::gappy operator", modes, count * components);
+  std::optional<Fault> fault;
   for (std::size_t i = 0; i < count; ++i) {
     const GlobalIndex id = rows.getGlobalElement(static_cast<LocalIndex>(i));
     const auto place = std::lower_bound(mesh.rows.begin(), mesh.rows.end(), id);
     if (place == mesh.rows.end() || *place != id) {
-      throw FileError(file, "", fmt::format("its sampled model has particle {}, which sample_mesh/rows lacks", id));
+      fault = Fault{"", fmt::format("its sampled model has particle {}, which sample_mesh/rows lacks", id), {}};
+      break;
     }
     for (std::size_t c = 0; c < components; ++c) {
       const std::size_t column = (place - mesh.rows.begin()) * components + c;
@@ -42,6 +46,7 @@ MatrixView local_columns(const SampleMesh& mesh, const Map& rows, std::size_t co
       }
     }
   }
+  throw_together(*rows.getComm(), file, fault);
   return result;
 }
 

@@ -50,7 +50,8 @@ PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings)
   frozen_.x = VectorView("kiln::rom::frozen coordinates", size);
   jacobian_tangent_ = MatrixView("kiln::rom::J Phi", rows, size);
   small_ = MatrixView("kiln::rom::reduced Jacobian", size, size);
-  state_ = VectorView("kiln::rom::state of the sources", model_->sources()->getMyGlobalIndices().extent(0) * components);
+  state_ =
+      VectorView("kiln::rom::state of the sources", model_->sources()->getMyGlobalIndices().extent(0) * components);
   rate_ = VectorView("kiln::rom::rate", rows);
   residual_ = VectorView("kiln::rom::residual", rows);
   g_ = VectorView("kiln::rom::reduced residual", size);
@@ -90,8 +91,7 @@ void PetrovGalerkin::evaluate(ConstVectorView x, double time, VectorView u, Vect
 }
 
 bool PetrovGalerkin::linearised_for(double alpha, double gamma) const {
-  return frozen_.age >= 0 && frozen_.alpha == alpha && frozen_.gamma == gamma &&
-         (trial_->affine() || gamma != 0.0);
+  return frozen_.age >= 0 && frozen_.alpha == alpha && frozen_.gamma == gamma && (trial_->affine() || gamma != 0.0);
 }
 
 void PetrovGalerkin::linearise(double alpha, double gamma, ConstVectorView x, double time) {
@@ -113,7 +113,8 @@ void PetrovGalerkin::linearise(double alpha, double gamma, ConstVectorView x, do
   dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
   reciprocal_condition_ = factors_.factor(small_);
   if (!(reciprocal_condition_ > 1e-15)) {
-    throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows", time);
+    throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows",
+                          time);
   }
   copy(x, frozen_.x);
   frozen_.alpha = alpha;

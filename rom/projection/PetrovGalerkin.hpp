@@ -16,10 +16,10 @@ namespace kiln {
 ///
 ///     Ψᵀ r(g(û)) = 0,   by û ← û − (Ψᵀ J̃Φ)⁻¹ Ψᵀ r,   J̃Φ = (α0 I − γ ∂f/∂u) ∂g/∂û at the model's rows,
 ///
-/// with Ψ a TestBasis: Galerkin, LSPG (Alg. 1 without hyper-reduction) or GNAT (Alg. 1). The model may be the full one or
-/// a sampled one. Every rank holds all of û, computes the state of its sources from it and adds up one vector of M numbers
-/// an iteration; nothing else is communicated. J̃Φ, Ψ and the factors of Ψᵀ J̃Φ are kept for `refresh` steps; with them
-/// kept, an iteration allocates nothing.
+/// with Ψ a TestBasis: Galerkin, LSPG (Alg. 1 without hyper-reduction) or GNAT (Alg. 1). The model may be the full one
+/// or a sampled one. Every rank holds all of û, computes the state of its sources from it and adds up one vector of M
+/// numbers an iteration; nothing else is communicated. J̃Φ, Ψ and the factors of Ψᵀ J̃Φ are kept for `refresh` steps;
+/// with them kept, an iteration allocates nothing.
 ///
 /// Convergence: ‖Ψᵀr‖₂ relative to its first value of the step (Alg. 1, line 10).
 class PetrovGalerkin : public Method {

@@ -4,13 +4,13 @@
 
 namespace kiln {
 
-/// The test space Ψ of a Petrov–Galerkin projection Ψᵀ r(u_ref + Φ û) = 0, on this rank's rows. Methods differ in it and
-/// in nothing else.
+/// The test space Ψ of a Petrov–Galerkin projection Ψᵀ r(u_ref + Φ û) = 0, on this rank's rows. Methods differ in it
+/// and in nothing else.
 class TestBasis {
  public:
   virtual ~TestBasis() = default;
-  /// Ψ from the trial space's tangent Φ and from J̃Φ, the residual's Jacobian applied to it; both rows × components by M.
-  /// The view may be one of the arguments or the test basis's own; it is true until the next call. Collective.
+  /// Ψ from the trial space's tangent Φ and from J̃Φ, the residual's Jacobian applied to it; both rows × components by
+  /// M. The view may be one of the arguments or the test basis's own; it is true until the next call. Collective.
   virtual ConstMatrixView form(ConstMatrixView tangent, ConstMatrixView jacobian_tangent,
                                const Communicator& communicator) = 0;
 };

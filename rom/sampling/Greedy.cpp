@@ -111,8 +111,10 @@ std::vector<GlobalIndex> Greedy::checked_seeds(GlobalIndex particles) const {
   for (std::size_t k = 0; k < seeds_.size(); ++k) {
     const std::string place = fmt::format("{}.seeds.{}", path_, k);
     if (seeds_[k] < 0 || seeds_[k] >= particles) {
-      problems.push_back({place, fmt::format("there is no particle {}", seeds_[k]),
-                          fmt::format("an id from 0 to {}", particles - 1), {}});
+      problems.push_back({place,
+                          fmt::format("there is no particle {}", seeds_[k]),
+                          fmt::format("an id from 0 to {}", particles - 1),
+                          {}});
     } else if (!known.insert(seeds_[k]).second) {
       problems.push_back({place, fmt::format("particle {} is named twice", seeds_[k]), "each seed once", {}});
     }

@@ -13,7 +13,8 @@ class GrowingLeastSquares {
 
   /// `row`: one value a column.
   void add_row(std::vector<double> row);
-  /// Takes the next column into the leading block. Throws std::logic_error if there are no more rows than columns in it.
+  /// Takes the next column into the leading block. Throws std::logic_error if there are no more rows than columns in
+  /// it.
   void add_column();
   int leading() const { return leading_; }
   /// α of column q; entries of directions that the rows do not see are zero.

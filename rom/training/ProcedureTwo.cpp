@@ -51,8 +51,7 @@ MatrixView on_sources(const Model& model, const MatrixView& modes) {
 }
 
 VectorView initial_state(const Model& model) {
-  VectorView state("kiln::rom::initial state",
-                   model.sources()->getMyGlobalIndices().extent(0) * model.fields().size());
+  VectorView state("kiln::rom::initial state", model.sources()->getMyGlobalIndices().extent(0) * model.fields().size());
   model.initial_state(state);
   return state;
 }
@@ -98,7 +97,8 @@ Specification ProcedureTwo::specification() {
             PodSettings::specification());
   s.component<Sampling>("sampling", "which particles the hyper-reduced run evaluates").defaults_to("greedy");
   s.section("snapshots", "of the full-order state", snapshot_specification());
-  s.sections("queries", "further positions whose state online runs can tell; probes of the output are always among them",
+  s.sections("queries",
+             "further positions whose state online runs can tell; probes of the output are always among them",
              query_specification())
       .optional();
   return s;
@@ -184,8 +184,8 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   facts["residual_basis"] = facts_of(residual_basis);
 
   stage("sample mesh and file", report, [&] {
-    const GappyOperator gappy = gappy_operator(
-        sampled_rows(*model_->rows(), residual_basis.modes, sampled, components), block_.sublist("sampling").name());
+    const GappyOperator gappy = gappy_operator(sampled_rows(*model_->rows(), residual_basis.modes, sampled, components),
+                                               block_.sublist("sampling").name());
     facts["sampled"] = sampled.size();
     facts["sigma_min"] = gappy.smallest_singular_value;
     facts["gappy_condition"] = gappy.condition;

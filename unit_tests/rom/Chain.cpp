@@ -6,6 +6,7 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "framework/files/Hdf5.hpp"
 
@@ -53,8 +54,9 @@ Chain::Chain(const Teuchos::ParameterList& list, const Context& context, const h
   const hdf5::Array<long long> rows = group.integers("rows", {0});
   all_rows_.assign(rows.values.begin(), rows.values.end());
   const std::size_t rank = context.communicator->getRank(), ranks = context.communicator->getSize();
-  build({all_rows_.begin() + all_rows_.size() * rank / ranks, all_rows_.begin() + all_rows_.size() * (rank + 1) / ranks},
-        context.communicator);
+  build(
+      {all_rows_.begin() + all_rows_.size() * rank / ranks, all_rows_.begin() + all_rows_.size() * (rank + 1) / ranks},
+      context.communicator);
 }
 
 Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows)
@@ -77,11 +79,12 @@ Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows)
 
 void Chain::build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const Communicator>& communicator) {
   std::vector<GlobalIndex> sources = mine;
+  std::unordered_set<GlobalIndex> known(mine.begin(), mine.end());
   for (const GlobalIndex id : mine) {
     for (const int offset : offsets) {
       const GlobalIndex other = id + offset;
       if (other < 0 || other >= count_) continue;
-      if (std::find(sources.begin(), sources.end(), other) == sources.end()) sources.push_back(other);
+      if (known.insert(other).second) sources.push_back(other);
     }
   }
   const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
@@ -177,13 +180,14 @@ void Chain::save_sample(hdf5::Group& group) const {
 }
 
 KILN_REGISTER(Model, Chain, "test chain", "diffusion, reaction and a moving source on a line; for tests");
+KILN_REGISTER(Model, RateOnly, "test rate only", "the same with its rate alone; for tests");
 
 Teuchos::ParameterList input_of(const Case& values) {
   Teuchos::ParameterList input("");
   input.set("title", std::string("test"));
   Teuchos::ParameterList& model = input.sublist("model");
   model.setName("model");
-  model.set("type", std::string("test chain"));
+  model.set("type", values.model);
   model.set("count", values.count);
   model.set("components", values.components);
   model.set("diffusion", 30.0);
@@ -206,7 +210,7 @@ Teuchos::ParameterList input_of(const Case& values) {
   Teuchos::ParameterList& solver = newton.sublist("linear_solver");
   solver.setName("time.newton.linear_solver");
   solver.set("type", std::string("gmres"));
-  solver.set("tolerance", 1e-12);
+  solver.set("tolerance", values.linear_tolerance);
   solver.set("iterations", 200);
   solver.set("preconditioner", std::string("none"));
   solver.set("restart", 100);

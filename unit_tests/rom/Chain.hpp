@@ -5,8 +5,8 @@
 
 namespace kiln::test {
 
-/// A chain of N particles on [0, 1] that diffuse to their nearest and second nearest neighbours, react and are heated by
-/// a moving source; with two components a second field is coupled to the first:
+/// A chain of N particles on [0, 1] that diffuse to their nearest and second nearest neighbours, react and are heated
+/// by a moving source; with two components a second field is coupled to the first:
 ///
 ///     du/dt = D Σ_j w_ij (u_j − u_i) − R u³ + P exp(−((x − v t)/0.1)²) [+ 0.3 w]
 ///     dw/dt = D/2 Σ_j w_ij (w_j − w_i) − 0.5 u
@@ -45,23 +45,25 @@ class Chain : public Model {
   std::vector<LocalIndex> neighbours_;  ///< four a row, −1: none
 };
 
-/// A model that offers what every model must, and positions.
+/// The chain as a model that offers nothing but what every model must, and positions. Registered as "test rate only".
 class RateOnly : public Model {
  public:
-  explicit RateOnly(std::shared_ptr<Model> inner) : inner_(std::move(inner)) {}
-  Teuchos::RCP<const Map> rows() const override { return inner_->rows(); }
-  Teuchos::RCP<const Map> sources() const override { return inner_->sources(); }
-  std::vector<Field> fields() const override { return inner_->fields(); }
-  void initial_state(VectorView u) const override { inner_->initial_state(u); }
-  void rate(ConstVectorView u, double time, VectorView f) const override { inner_->rate(u, time, f); }
-  ConstPositionView positions() const override { return inner_->positions(); }
+  static Specification specification() { return Chain::specification(); }
+  RateOnly(const Teuchos::ParameterList& list, const Context& context) : chain_(list, context) {}
+  Teuchos::RCP<const Map> rows() const override { return chain_.rows(); }
+  Teuchos::RCP<const Map> sources() const override { return chain_.sources(); }
+  std::vector<Field> fields() const override { return chain_.fields(); }
+  void initial_state(VectorView u) const override { chain_.initial_state(u); }
+  void rate(ConstVectorView u, double time, VectorView f) const override { chain_.rate(u, time, f); }
+  ConstPositionView positions() const override { return chain_.positions(); }
 
  private:
-  std::shared_ptr<Model> inner_;
+  Chain chain_;
 };
 
 /// What a test sets; the rest of a whole input is filled in.
 struct Case {
+  std::string model = "test chain";
   int count = 60;
   int components = 1;
   double power = 40.0;
@@ -71,6 +73,7 @@ struct Case {
   std::string scheme = "backward euler";
   std::string method = "fom";
   double tolerance = 1e-12;
+  double linear_tolerance = 1e-12;
   int iterations = 20;
   int refresh = 1;
   std::string jacobian = "matrix free";

@@ -18,11 +18,10 @@ using test::self;
 using test::world;
 
 /// Entry (i, k) of the orthonormal cosine basis of n points.
-double cosine(int i, int k, int n) {
-  return std::sqrt((k == 0 ? 1.0 : 2.0) / n) * std::cos(M_PI * (i + 0.5) * k / n);
-}
+double cosine(int i, int k, int n) { return std::sqrt((k == 0 ? 1.0 : 2.0) / n) * std::cos(M_PI * (i + 0.5) * k / n); }
 
-/// Snapshots with known factors: A = Σ_k sigma_k u_k v_kᵀ, u and v cosines. Rank r holds rows first(r) … first(r + 1) − 1.
+/// Snapshots with known factors: A = Σ_k sigma_k u_k v_kᵀ, u and v cosines. Rank r holds rows first(r) … first(r + 1)
+/// − 1.
 struct Known {
   int rows, columns;
   std::vector<double> sigma;
@@ -35,14 +34,16 @@ struct Known {
     return rank == ranks ? rows : ranks == 3 && rank == 1 ? 0 : static_cast<int>(rows * share * share);
   }
   Snapshots snapshots(const Communicator& communicator) const {
-    const int begin = first(communicator, communicator.getRank()), end = first(communicator, communicator.getRank() + 1);
+    const int begin = first(communicator, communicator.getRank()),
+              end = first(communicator, communicator.getRank() + 1);
     Snapshots result(end - begin);
     VectorView column("column", end - begin);
     for (int j = 0; j < columns; ++j) {
       for (int i = begin; i < end; ++i) {
         column(i - begin) = 0.0;
         for (std::size_t k = 0; k < sigma.size(); ++k) {
-          column(i - begin) += sigma[k] * cosine(i, static_cast<int>(k) + 1, rows) * cosine(j, static_cast<int>(k), columns);
+          column(i - begin) +=
+              sigma[k] * cosine(i, static_cast<int>(k) + 1, rows) * cosine(j, static_cast<int>(k), columns);
         }
       }
       result.append(column);
@@ -190,13 +191,13 @@ TEST(Truncation, FollowsItsRules) {
     return truncate(sigma, s).rank;
   };
   using Of = PodSettings::EnergyOf;
-  EXPECT_EQ(rank(0.5, Of::squared_singular_values), 1);    // 9/14 = 0.643
+  EXPECT_EQ(rank(0.5, Of::squared_singular_values), 1);  // 9/14 = 0.643
   EXPECT_EQ(rank(0.642, Of::squared_singular_values), 1);
   EXPECT_EQ(rank(0.644, Of::squared_singular_values), 2);
-  EXPECT_EQ(rank(0.93, Of::squared_singular_values), 3);   // 13/14 = 0.929
-  EXPECT_EQ(rank(0.5, Of::singular_values), 1);            // 3/6
+  EXPECT_EQ(rank(0.93, Of::squared_singular_values), 3);  // 13/14 = 0.929
+  EXPECT_EQ(rank(0.5, Of::singular_values), 1);           // 3/6
   EXPECT_EQ(rank(0.501, Of::singular_values), 2);
-  EXPECT_EQ(rank(0.84, Of::singular_values), 3);           // 5/6 = 0.833
+  EXPECT_EQ(rank(0.84, Of::singular_values), 3);  // 5/6 = 0.833
   EXPECT_EQ(rank(1.0, Of::squared_singular_values), 3);
   EXPECT_EQ(truncate(sigma, s).independent, 3);
   s.algorithm = PodSettings::Algorithm::tsqr;

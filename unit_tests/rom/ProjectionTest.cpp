@@ -48,9 +48,9 @@ TEST_P(FullRank, ReproducesTheFullOrderRun) {
   values.steps = 25;
   values.scheme = GetParam().scheme;
   values.components = GetParam().components;
-  FullOrder full(model_of(values, world()), newton_of(values),
-                 Registry<LinearSolver>::create(
-                     input_of(values).sublist("time").sublist("newton").sublist("linear_solver"), {}));
+  FullOrder full(
+      model_of(values, world()), newton_of(values),
+      Registry<LinearSolver>::create(input_of(values).sublist("time").sublist("newton").sublist("linear_solver"), {}));
   const std::vector<double> exact = march(full, values);
   const auto reduced = of_kind(GetParam().method, values, values.count * values.components, world());
   EXPECT_LT(largest_difference(march(*reduced, values), exact), 1e-9);
@@ -211,11 +211,10 @@ double residual_norm_after_step(PetrovGalerkin& method, const Case& values) {
 
 TEST(Lspg, MinimisesTheResidualThatGalerkinDoesNot) {
   Case values;
-  values.step = 0.02;
-  const double lspg = residual_norm_after_step(*of_kind("lspg", values, 4, world()), values);
-  const double galerkin = residual_norm_after_step(*of_kind("galerkin", values, 4, world()), values);
-  EXPECT_LT(lspg, 0.999 * galerkin);
-  EXPECT_GT(lspg, 0.0);
+  values.step = 0.1;
+  // Both numbers were computed independently with NumPy: Newton on the two stationarity conditions to round-off.
+  EXPECT_NEAR(residual_norm_after_step(*of_kind("lspg", values, 4, world()), values), 5.432849245104782, 1e-9);
+  EXPECT_NEAR(residual_norm_after_step(*of_kind("galerkin", values, 4, world()), values), 5.57253370687072, 1e-9);
 }
 
 TEST(Gnat, WithAllRowsAndACompleteResidualBasisIsLspg) {
@@ -259,14 +258,15 @@ TEST(PetrovGalerkin, StartsFromTheNearestStateWhereTheReferenceIsAnother) {
   const std::shared_ptr<Model> model = model_of(values, world());
   const MatrixView modes = test::cosines(*model->rows(), 1, values.count, values.count);
   VectorView reference("reference", modes.extent(0));
-  PetrovGalerkin::Parts parts{model,
-                              std::make_unique<AffineBasis>(
-                                  VectorView("zero", model->sources()->getMyGlobalIndices().extent(0)),
-                                  test::cosines(*model->sources(), 1, values.count, values.count)),
-                              std::make_unique<GalerkinTestBasis>(),
-                              {model->rows(), model->positions(), std::make_unique<AffineBasis>(reference, modes)}};
+  PetrovGalerkin::Parts parts{
+      model,
+      std::make_unique<AffineBasis>(VectorView("zero", model->sources()->getMyGlobalIndices().extent(0)),
+                                    test::cosines(*model->sources(), 1, values.count, values.count)),
+      std::make_unique<GalerkinTestBasis>(),
+      {model->rows(), model->positions(), std::make_unique<AffineBasis>(reference, modes)}};
   PetrovGalerkin method(std::move(parts), newton_of(values));
-  VectorView x("x", values.count), u("u", method.row_size()), initial("u0", model->sources()->getMyGlobalIndices().extent(0));
+  VectorView x("x", values.count), u("u", method.row_size()),
+      initial("u0", model->sources()->getMyGlobalIndices().extent(0));
   method.initial(x);
   method.state(x, u);
   model->initial_state(initial);
@@ -283,11 +283,13 @@ TEST(PetrovGalerkin, LineSearchTakesTheSameSolution) {
   NewtonSettings settings = newton_of(values);
   settings.line_search = true;
   PetrovGalerkin::Parts parts{
-      model, std::make_unique<AffineBasis>(reference, test::cosines(*model->sources(), 1, values.count, 8)),
+      model,
+      std::make_unique<AffineBasis>(reference, test::cosines(*model->sources(), 1, values.count, 8)),
       std::make_unique<LspgTestBasis>(),
       {model->rows(), model->positions(),
        std::make_unique<AffineBasis>(
-           VectorView(Kokkos::subview(reference, std::make_pair(std::size_t(0), model->rows()->getMyGlobalIndices().extent(0)))),
+           VectorView(Kokkos::subview(reference,
+                                      std::make_pair(std::size_t(0), model->rows()->getMyGlobalIndices().extent(0)))),
            test::cosines(*model->rows(), 1, values.count, 8))}};
   PetrovGalerkin method(std::move(parts), settings);
   EXPECT_LT(largest_difference(march(method, values), plain), 1e-10);

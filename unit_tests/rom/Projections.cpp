@@ -37,7 +37,9 @@ std::shared_ptr<Model> model_of(const Case& values, const Teuchos::RCP<const Com
   return Registry<Model>::create(input_of(values).sublist("model"), Model::Context{communicator});
 }
 
-NewtonSettings newton_of(const Case& values) { return NewtonSettings(input_of(values).sublist("time").sublist("newton")); }
+NewtonSettings newton_of(const Case& values) {
+  return NewtonSettings(input_of(values).sublist("time").sublist("newton"));
+}
 
 std::unique_ptr<PetrovGalerkin> projection(std::shared_ptr<Model> model, const Case& values, int modes,
                                            std::unique_ptr<TestBasis> test) {

@@ -7,7 +7,8 @@
 
 namespace kiln::test {
 
-/// Entries of the particles of `map`, × components, of the first M vectors of the orthonormal cosine basis of all entries.
+/// Entries of the particles of `map`, × components, of the first M vectors of the orthonormal cosine basis of all
+/// entries.
 MatrixView cosines(const Map& map, int components, int all_entries, int modes);
 
 std::shared_ptr<Model> model_of(const Case& values, const Teuchos::RCP<const Communicator>& communicator);
@@ -20,7 +21,8 @@ std::unique_ptr<PetrovGalerkin> projection(std::shared_ptr<Model> model, const C
 std::unique_ptr<PetrovGalerkin> gnat_projection(std::shared_ptr<Model> model, const Case& values, int modes,
                                                 int residual_modes);
 
-/// Marches through the case's steps and returns the state of all the method's particles at the end, by id, on every rank.
+/// Marches through the case's steps and returns the state of all the method's particles at the end, by id, on every
+/// rank.
 std::vector<double> march(Method& method, const Case& values);
 std::vector<double> gathered_state(const Method& method, ConstVectorView x);
 

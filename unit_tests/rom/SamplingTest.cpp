@@ -62,9 +62,9 @@ std::string message(const std::function<void()>& work) {
   return "nothing was thrown";
 }
 
-// Worked by hand. Turn 1 adds two particles by the first mode's squares: 3 (25), then 0 (16). Turn 2 fits the second mode
-// at {3, 0} by the first: α = (5·1 + 4·2)/(25 + 16) = 13/41; misfits 2 − 52/41 = 0.73, 0 − 13/41 = −0.32, 4 − 26/41 = 3.37,
-// 1 − 65/41 = −0.59, 1 − 39/41 = 0.05: particle 2 is worst.
+// Worked by hand. Turn 1 adds two particles by the first mode's squares: 3 (25), then 0 (16). Turn 2 fits the second
+// mode at {3, 0} by the first: α = (5·1 + 4·2)/(25 + 16) = 13/41; misfits 2 − 52/41 = 0.73, 0 − 13/41 = −0.32, 4 −
+// 26/41 = 3.37, 1 − 65/41 = −0.59, 1 − 39/41 = 0.05: particle 2 is worst.
 const Table by_hand{{4, 2}, {1, 0}, {2, 4}, {5, 1}, {3, 1}};
 
 TEST(Greedy, ChoosesAsWorkedByHand) {
@@ -101,22 +101,27 @@ TEST(Greedy, ChoosesTheSameOnAnyNumberOfRanks) {
       EXPECT_EQ(together, sample(*greedy(samples, {5, 80}), table, components, self()));
       EXPECT_EQ(together.size(), samples == 0 ? 24u : static_cast<std::size_t>(samples));
       EXPECT_TRUE(std::binary_search(together.begin(), together.end(), 5));
-      EXPECT_TRUE(std::adjacent_find(together.begin(), together.end(), std::greater_equal<GlobalIndex>()) == together.end());
+      EXPECT_TRUE(std::adjacent_find(together.begin(), together.end(), std::greater_equal<GlobalIndex>()) ==
+                  together.end());
     }
   }
 }
 
 TEST(Greedy, RefusesWhatCannotBe) {
   const Table table = random_table(20, 6);
-  EXPECT_EQ(message([&] { sample(*greedy(5), table, 1, world()); }),
-            "reduction.sampling.samples: 5 particles with 1 component each cannot determine 6 residual modes; expected at "
-            "least 6");
-  EXPECT_EQ(message([&] { sample(*greedy(2), table, 2, world()); }),
-            "reduction.sampling.samples: 2 particles with 2 components each cannot determine 6 residual modes; expected "
-            "at least 3");
+  EXPECT_EQ(
+      message([&] { sample(*greedy(5), table, 1, world()); }),
+      "reduction.sampling.samples: 5 particles with 1 component each cannot determine 6 residual modes; expected at "
+      "least 6");
+  EXPECT_EQ(
+      message([&] { sample(*greedy(2), table, 2, world()); }),
+      "reduction.sampling.samples: 2 particles with 2 components each cannot determine 6 residual modes; expected "
+      "at least 3");
   EXPECT_EQ(message([&] { sample(*greedy(21), table, 1, world()); }),
             "reduction.sampling.samples: 21 particles are asked for; expected at most the model's 20");
-  EXPECT_EQ(message([&] { sample(*greedy(8, {3, 20, 3}), table, 1, world()); }),
+  EXPECT_EQ(message([&] {
+              sample(*greedy(8, {3, 20, 3}), table, 1, world());
+            }),
             "reduction.sampling.seeds.1: there is no particle 20; expected an id from 0 to 19\n"
             "reduction.sampling.seeds.2: particle 3 is named twice; expected each seed once");
 }
@@ -162,8 +167,9 @@ TEST(GappyOperator, IsALeftInverse) {
 TEST(GappyOperator, RefusesDependentRows) {
   MatrixView modes("P Phi_r", 3, 2);
   for (int i = 0; i < 3; ++i) modes(i, 0) = modes(i, 1) = i + 1.0;
-  EXPECT_NE(message([&] { gappy_operator(modes, "reduction.sampling"); })
-                .find("reduction.sampling: the sampled particles cannot tell the residual modes apart"),
+  EXPECT_NE(message([&] {
+              gappy_operator(modes, "reduction.sampling");
+            }).find("reduction.sampling: the sampled particles cannot tell the residual modes apart"),
             std::string::npos);
 }
 
