@@ -78,6 +78,10 @@ void RunFile::create(ConstPositionView positions) {
     file_.create_reals(field.name, {frames, particles}, not_written);
     file_.attribute_of(field.name, "unit", field.unit);
   }
+  if (contents_.coordinates > 0) {
+    file_.create_reals("coordinates", {frames, contents_.coordinates}, not_written);
+    file_.attribute_of("coordinates", "unit", "1");
+  }
   hdf5::Group views = file_.create_group("frame");
   for (const Field& field : contents_.fields) views.create_group(field.name).create_row_views("/" + field.name);
   create_vtkhdf();
@@ -149,7 +153,7 @@ void RunFile::reopen(int first_step) {
   file_.write_block("step", {0}, {count}, steps);
 }
 
-void RunFile::write(int step, double time, ConstVectorView u) {
+void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x) {
   const auto found = std::lower_bound(contents_.steps.begin(), contents_.steps.end(), step);
   if (found == contents_.steps.end() || *found != step) {
     throw std::logic_error(fmt::format("{}: step {} is none of the frames planned", path(), step));
@@ -166,8 +170,13 @@ void RunFile::write(int step, double time, ConstVectorView u) {
     file_.write_block(name, {frame, order_.first()}, {1, order_.count()}, values);
     newest.write_block(name, {order_.first()}, {order_.count()}, values);
   }
-  // The time comes last: it says that the frame is whole.
   const std::size_t count = root_count();
+  if (contents_.coordinates > 0) {
+    const auto coordinates = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x);
+    const std::vector<double> row(coordinates.data(), coordinates.data() + count * contents_.coordinates);
+    file_.write_block("coordinates", {frame, 0}, {count, count * contents_.coordinates}, row);
+  }
+  // The time comes last: it says that the frame is whole.
   file_.write_block("step", {frame}, {count}, std::vector<long long>(count, step));
   file_.write_block("time", {frame}, {count}, std::vector<double>(count, time));
   written_.push_back({frame, time});

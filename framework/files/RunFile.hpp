@@ -21,6 +21,7 @@ namespace kiln {
 /// | `/position` | n × 3 | m |
 /// | `/time`, `/step` | frames | s; NaN and −1 for a frame that is not written yet |
 /// | `/FIELD` | frames × n | one for each component of the state, with its unit |
+/// | `/coordinates` | frames × M | reduced coordinates û, of reduced methods |
 /// | `/frame/FIELD/K` | n | row K of `/FIELD`; a view, for readers of XDMF |
 /// | `/VTKHDF` | | particles and the newest frame, for VTK ≥ 9.1 |
 ///
@@ -32,6 +33,7 @@ class RunFile {
     std::vector<Field> fields;
     std::vector<int> steps;                         ///< the step of each frame, ascending
     std::map<std::string, std::string> provenance;  ///< attributes of the root
+    std::size_t coordinates = 0;                    ///< length of û; 0: the unknown is the state
   };
 
   /// Makes `folder`/run.h5, or opens it to write the frames after `first_step` when that is above 0. positions:
@@ -40,8 +42,9 @@ class RunFile {
   RunFile(std::filesystem::path folder, const Map& particles, ConstPositionView positions, Contents contents,
           int first_step, Teuchos::RCP<const Communicator> communicator);
 
-  /// Writes the frame of `step`, one of Contents::steps. u: particles × components. Collective.
-  void write(int step, double time, ConstVectorView u);
+  /// Writes the frame of `step`, one of Contents::steps. u: particles × components; x: the method's unknown, looked at
+  /// where Contents::coordinates is not 0. Collective.
+  void write(int step, double time, ConstVectorView u, ConstVectorView x = {});
 
   std::size_t frames_written() const { return written_.size(); }
   std::string path() const { return (folder_ / "run.h5").string(); }

@@ -247,6 +247,7 @@ void FullOrder::restore(const hdf5::Group& group) {
 void FullOrder::report(nlohmann::json& section) const {
   section["particles"] = static_cast<long long>(model_->rows()->getGlobalNumElements());
   section["components"] = model_->fields().size();
+  for (const auto& [name, value] : model_->facts()) section["model"][name] = value;
   section["jacobian"] = to_text(settings_.jacobian);
   section["refresh"] = settings_.refresh;
   section["tolerance"] = settings_.tolerance;

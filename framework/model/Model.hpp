@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
@@ -70,6 +71,10 @@ class Model {
   virtual std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const;
   /// Writes what a sampled model needs to be rebuilt without the full one, for any number of ranks. Collective.
   virtual void save_sample(hdf5::Group& group) const;
+
+  /// What the run report should say of the model, e.g. {"pairs", 7871920}, over all ranks. A model that has nothing to
+  /// add to what its method reports anyway keeps the empty list. Collective.
+  virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
 
   Parameters& parameters() { return parameters_; }
   const Parameters& parameters() const { return parameters_; }

@@ -1,73 +1,120 @@
 #include "framework/observers/Extremes.hpp"
 
+#include <fmt/format.h>
+
 #include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Map.hpp>
 #include <limits>
 
+#include "framework/files/CsvTable.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/RunReport.hpp"
 
 namespace kiln {
+namespace {
 
-KILN_REGISTER(Observer, Extremes, "extremes", "highest and lowest value of each component, into the report");
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr const char* file_name = "extremes.csv";
+
+}  // namespace
+
+KILN_REGISTER(Observer, Extremes, "extremes", "highest and lowest value of each component over time: extremes.csv");
 
 Specification Extremes::specification() {
   Specification specification;
-  specification.integer("every", "steps between two looks").at_least(1).defaults_to(10);
+  specification.integer("every", "steps between two rows").at_least(1).defaults_to(10);
   return specification;
 }
 
 Extremes::Extremes(const Teuchos::ParameterList& list, const Context& context)
-    : method_(context.method),
-      communicator_(context.communicator),
+    : context_(context),
       every_(list.get<int>("every")),
-      state_("kiln::extremes::state", local_size(*context.method.particles()) * context.method.fields().size()),
-      largest_(context.method.fields().size(), {-std::numeric_limits<double>::infinity()}),
-      smallest_(context.method.fields().size(), {std::numeric_limits<double>::infinity()}) {}
+      fields_(context.method.fields()),
+      state_("kiln::observers::state", context.method.positions().extent(0) * fields_.size()) {}
+
+std::vector<std::string> Extremes::columns() const {
+  std::vector<std::string> columns{"step", "time [s]"};
+  for (const Field& field : fields_) {
+    for (const char* which : {"largest", "smallest"}) {
+      columns.push_back(fmt::format("{} {} [{}]", which, field.name, field.unit));
+      columns.push_back(fmt::format("particle of {} {}", which, field.name));
+    }
+  }
+  return columns;
+}
+
+std::vector<Extremes::Extreme> Extremes::local_extremes(const Moment& moment) {
+  context_.method.state(moment.x, state_);
+  const auto state = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_);
+  const std::size_t components = fields_.size();
+  std::vector<Extreme> extremes;
+  for (std::size_t component = 0; component < components; ++component) {
+    std::size_t largest = component, smallest = component;
+    for (std::size_t index = component; index < state.extent(0); index += components) {
+      if (state(index) > state(largest)) largest = index;
+      if (state(index) < state(smallest)) smallest = index;
+    }
+    const auto extreme = [&](std::size_t index, double none) {
+      if (index >= state.extent(0)) return Extreme{none, -1.0};
+      const auto particle = static_cast<LocalIndex>(index / components);
+      return Extreme{state(index), static_cast<double>(context_.method.particles()->getGlobalElement(particle))};
+    };
+    extremes.push_back(extreme(largest, -infinity));
+    extremes.push_back(extreme(smallest, infinity));
+  }
+  return extremes;
+}
 
 void Extremes::observe(const Moment& moment) {
-  if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
-  method_.state(moment.x, state_);
-  const auto state = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_);
-  const std::size_t components = largest_.size();
-  for (std::size_t index = 0; index < state.extent(0); ++index) {
-    Extreme& largest = largest_[index % components];
-    Extreme& smallest = smallest_[index % components];
-    const double value = state(index);
-    if (value <= largest.value && value >= smallest.value) continue;
-    const auto particle = method_.particles()->getGlobalElement(static_cast<LocalIndex>(index / components));
-    if (value > largest.value) largest = {value, moment.time, particle};
-    if (value < smallest.value) smallest = {value, moment.time, particle};
+  if (log_ == nullptr) {
+    log_ = std::make_unique<CsvLog>(context_.folder / file_name, columns(), context_.first_step, context_.communicator);
   }
+  if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
+  const std::vector<Extreme> mine = local_extremes(moment);
+  const int ranks = context_.communicator->getSize();
+  std::vector<Extreme> all(mine.size() * static_cast<std::size_t>(ranks));
+  Teuchos::gatherAll(*context_.communicator, static_cast<int>(2 * mine.size()), &mine.data()->value,
+                     static_cast<int>(2 * all.size()), &all.data()->value);
+  std::vector<double> row{moment.time};
+  for (std::size_t which = 0; which < mine.size(); ++which) {
+    const double sign = which % 2 == 0 ? 1.0 : -1.0;
+    Extreme best = all[which];
+    for (std::size_t at = which; at < all.size(); at += mine.size()) {
+      const bool better = sign * all[at].value > sign * best.value;
+      // Equal values go to the lowest id, whichever rank holds it.
+      const bool earlier = all[at].value == best.value && all[at].particle < best.particle;
+      if (better || earlier) best = all[at];
+    }
+    row.push_back(best.value);
+    row.push_back(best.particle);
+  }
+  log_->add(moment.step, row);
 }
 
 void Extremes::finish(RunReport& report) {
-  const std::vector<Field> fields = method_.fields();
-  const auto over_ranks = [&](const Extreme& mine, double sign) {
-    double best = 0.0;
-    const double signed_value = sign * mine.value;
-    Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MAX, 1, &signed_value, &best);
-    // Of the ranks that hold the extreme value, the one with the lowest particle id speaks.
-    const GlobalIndex none = std::numeric_limits<GlobalIndex>::max();
-    const GlobalIndex candidate = signed_value == best && mine.particle >= 0 ? mine.particle : none;
-    GlobalIndex particle = none;
-    Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MIN, 1, &candidate, &particle);
-    const double my_time = candidate == particle && particle != none ? mine.time : 0.0;
-    double time = 0.0;
-    Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MAX, 1, &my_time, &time);
-    return nlohmann::json{{"value", sign * best}, {"time_s", time}, {"particle", particle}};
-  };
-  nlohmann::json& section = report.section("observers")["extremes"];
-  for (std::size_t component = 0; component < fields.size(); ++component) {
-    const nlohmann::json largest = over_ranks(largest_[component], 1.0);
-    const nlohmann::json smallest = over_ranks(smallest_[component], -1.0);
-    section[fields[component].name] = {{"unit", fields[component].unit},
-                                       {"largest", largest["value"]},
-                                       {"largest_time_s", largest["time_s"]},
-                                       {"largest_particle", largest["particle"]},
-                                       {"smallest", smallest["value"]},
-                                       {"smallest_time_s", smallest["time_s"]},
-                                       {"smallest_particle", smallest["particle"]}};
+  if (log_ != nullptr) log_->check();
+  nlohmann::json section;
+  if (context_.communicator->getRank() == 0 && log_ != nullptr) {
+    const CsvTable table = read_csv(context_.folder / file_name);
+    for (std::size_t component = 0; component < fields_.size(); ++component) {
+      nlohmann::json& entry = section[fields_[component].name];
+      entry["unit"] = fields_[component].unit;
+      for (std::size_t which = 0; which < 2; ++which) {
+        const std::size_t column = 2 + 4 * component + 2 * which;
+        const double sign = which == 0 ? 1.0 : -1.0;
+        const std::vector<double>* best = nullptr;
+        for (const std::vector<double>& row : table.rows) {
+          if (best == nullptr || sign * row[column] > sign * (*best)[column]) best = &row;
+        }
+        if (best == nullptr) continue;
+        const std::string name = which == 0 ? "largest" : "smallest";
+        entry[name] = (*best)[column];
+        entry[name + "_particle"] = static_cast<long long>((*best)[column + 1]);
+        entry[name + "_time_s"] = (*best)[1];
+      }
+    }
   }
+  report.section("observers")["extremes"] = section;
 }
 
 }  // namespace kiln

@@ -1,35 +1,43 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "framework/files/CsvLog.hpp"
 #include "framework/observers/Observer.hpp"
 #include "framework/registry/Specification.hpp"
 
 namespace kiln {
 
-/// Highest and lowest value of each component over all particles the method can tell, with place and time.
+/// Writes the highest and the lowest value of each component over all particles the method can tell, and the particles
+/// they stand at, into extremes.csv.
 class Extremes : public Observer {
  public:
-  Extremes(const Teuchos::ParameterList& list, const Context& context);
   static Specification specification();
+  Extremes(const Teuchos::ParameterList& list, const Context& context);
 
   void observe(const Moment& moment) override;
-  /// Section `observers`, key `extremes`: for each component `largest`, `smallest` and where they stood.
+  /// Section `observers`, key `extremes`: for each component `largest` and `smallest` of the whole run, earlier parts of
+  /// a restarted one included, with time and particle.
   void finish(RunReport& report) override;
 
  private:
   struct Extreme {
     double value;
-    double time = 0.0;  ///< s
-    GlobalIndex particle = -1;
+    double particle;  ///< global id; exact as a double
   };
-  Method& method_;
-  Teuchos::RCP<const Communicator> communicator_;
+  std::vector<std::string> columns() const;
+  /// Largest and smallest of each component on this rank, in turn.
+  std::vector<Extreme> local_extremes(const Moment& moment);
+
+  Context context_;
   int every_;
+  std::vector<Field> fields_;
   VectorView state_;
-  std::vector<Extreme> largest_, smallest_;  ///< of this rank, one a component
+  std::unique_ptr<CsvLog> log_;  ///< null before the first moment
 };
 
 }  // namespace kiln

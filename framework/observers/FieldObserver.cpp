@@ -38,23 +38,32 @@ Specification FieldObserver::specification() {
 }
 
 FieldObserver::FieldObserver(const Teuchos::ParameterList& list, const Context& context)
-    : method_(context.method),
+    : context_(context),
       steps_(output_steps(list.get<int>("every"), context.last_step)),
-      u_("kiln::observers::state", method_.positions().extent(0) * method_.fields().size()),
-      file_(std::make_unique<RunFile>(context.folder, *method_.particles(), method_.positions(),
-                                      RunFile::Contents{method_.fields(), steps_, attributes_of(context)},
-                                      context.first_step, context.communicator)) {}
+      u_("kiln::observers::state", context.method.positions().extent(0) * context.method.fields().size()) {}
+
+void FieldObserver::open() {
+  const Method& method = context_.method;
+  const std::size_t states = method.particles()->getGlobalNumElements() * method.fields().size();
+  const std::size_t unknowns = method.coordinates()->getGlobalNumElements();
+  RunFile::Contents contents{method.fields(), steps_, attributes_of(context_)};
+  // Where the unknown is not the state itself, it is what the whole field can be computed from.
+  if (unknowns != states) contents.coordinates = unknowns;
+  file_ = std::make_unique<RunFile>(context_.folder, *method.particles(), method.positions(), std::move(contents),
+                                    context_.first_step, context_.communicator);
+}
 
 void FieldObserver::observe(const Moment& moment) {
+  if (file_ == nullptr) open();
   if (!std::binary_search(steps_.begin(), steps_.end(), moment.step)) return;
-  method_.state(moment.x, u_);
-  file_->write(moment.step, moment.time, u_);
+  context_.method.state(moment.x, u_);
+  file_->write(moment.step, moment.time, u_, moment.x);
 }
 
 void FieldObserver::finish(RunReport& report) {
   report.section("fields") = {{"file", "run.h5"},
                               {"frames", file_->frames_written()},
-                              {"particles", method_.particles()->getGlobalNumElements()}};
+                              {"particles", context_.method.particles()->getGlobalNumElements()}};
 }
 
 KILN_REGISTER(Observer, FieldObserver, "fields",

@@ -19,10 +19,12 @@ class FieldObserver : public Observer {
   void finish(RunReport& report) override;
 
  private:
-  Method& method_;
+  void open();
+
+  Context context_;
   std::vector<int> steps_;
   VectorView u_;
-  std::unique_ptr<RunFile> file_;
+  std::unique_ptr<RunFile> file_;  ///< null before the first moment
 };
 
 }  // namespace kiln

@@ -60,7 +60,8 @@ Specification ProbeObserver::specification() {
 }
 
 ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& context)
-    : method_(context.method),
+    : context_(context),
+      method_(context.method),
       file_(context.folder / "probes.csv"),
       communicator_(context.communicator),
       every_(list.get<int>("every")),
@@ -69,12 +70,15 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
       u_("kiln::observers::state", method_.positions().extent(0) * fields_.size()),
       picked_("kiln::observers::picked", probes_.size() * fields_.size()),
       picked_host_(Kokkos::create_mirror_view(picked_)),
-      values_(probes_.size() * fields_.size()),
-      log_(file_, columns(), context.first_step, communicator_) {
+      values_(probes_.size() * fields_.size()) {
   std::vector<NearestParticle> particles;
   for (const Probe& probe : probes_) particles.push_back(probe.particle);
   entries_ = entries_on(communicator_->getRank(), particles, static_cast<int>(fields_.size()));
-  write_places(context);
+}
+
+void ProbeObserver::open() {
+  log_ = std::make_unique<CsvLog>(file_, columns(), context_.first_step, communicator_);
+  write_places();
 }
 
 std::vector<ProbeObserver::Probe> ProbeObserver::find_probes(const Teuchos::ParameterList& list,
@@ -115,7 +119,7 @@ std::vector<std::string> ProbeObserver::columns() const {
   return columns;
 }
 
-void ProbeObserver::write_places(const Context& context) const {
+void ProbeObserver::write_places() const {
   nlohmann::ordered_json places = nlohmann::ordered_json::array();
   for (const Probe& probe : probes_) {
     nlohmann::ordered_json place;
@@ -126,7 +130,7 @@ void ProbeObserver::write_places(const Context& context) const {
     place["distance_m"] = probe.particle.distance;
     places.push_back(std::move(place));
   }
-  write_atomically(context.folder / "probes.json", places.dump(2) + "\n", communicator_);
+  write_atomically(context_.folder / "probes.json", places.dump(2) + "\n", communicator_);
 }
 
 void ProbeObserver::gather_values() {
@@ -143,12 +147,13 @@ void ProbeObserver::gather_values() {
 }
 
 void ProbeObserver::observe(const Moment& moment) {
+  if (log_ == nullptr) open();
   if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
   method_.state(moment.x, u_);
   gather_values();
   std::vector<double> row{moment.time};
   row.insert(row.end(), values_.begin(), values_.end());
-  log_.add(moment.step, row);
+  log_->add(moment.step, row);
 }
 
 /// From the file, so that a restarted run's summary covers its earlier part too.
@@ -176,7 +181,8 @@ nlohmann::json ProbeObserver::summary() const {
 }
 
 void ProbeObserver::finish(RunReport& report) {
-  log_.check();
+  if (log_ == nullptr) return;
+  log_->check();
   std::string text;
   on_root(*communicator_, file_.string(), [&]() -> std::optional<Fault> {
     text = summary().dump();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -32,11 +33,13 @@ class ProbeObserver : public Observer {
     NearestParticle particle;
   };
   static std::vector<Probe> find_probes(const Teuchos::ParameterList& list, const Context& context);
-  void write_places(const Context& context) const;
+  void open();
+  void write_places() const;
   std::vector<std::string> columns() const;
   void gather_values();
   nlohmann::json summary() const;
 
+  Context context_;
   Method& method_;
   std::filesystem::path file_;
   Teuchos::RCP<const Communicator> communicator_;
@@ -48,7 +51,7 @@ class ProbeObserver : public Observer {
   VectorView picked_;
   VectorView::HostMirror picked_host_;
   std::vector<double> values_;  ///< probe by probe, component by component; on rank 0
-  CsvLog log_;
+  std::unique_ptr<CsvLog> log_;  ///< null before the first moment
 };
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <cmath>
 
 #include "framework/registry/Registry.hpp"
@@ -159,5 +160,12 @@ void HeatModel::rate(ConstVectorView u, double time, VectorView f) const {
 
 KILN_REGISTER(Model, HeatModel, "sph heat",
               "heat deposition by smoothed particle hydrodynamics (NRL report, Eqs. 6-20)");
+
+std::vector<std::pair<std::string, double>> HeatModel::facts() const {
+  const double mine = static_cast<double>(domain_.pairs.neighbours.extent(0));
+  double pairs = 0.0;
+  Teuchos::reduceAll(*domain_.rows->getComm(), Teuchos::REDUCE_SUM, 1, &mine, &pairs);
+  return {{"pairs", pairs}, {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
+}
 
 }  // namespace kiln

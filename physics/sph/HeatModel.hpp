@@ -45,6 +45,9 @@ class HeatModel final : public Model {
   std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const override;
   void save_sample(hdf5::Group& group) const override;
 
+  /// `pairs`: directed pairs of neighbours, and `neighbours_per_particle`.
+  std::vector<std::pair<std::string, double>> facts() const override;
+
   /// Particles, pairs and weights of this rank.
   const HeatDomain& domain() const { return domain_; }
   const MaterialTable& material() const { return table_; }
