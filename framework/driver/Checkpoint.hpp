@@ -8,9 +8,9 @@
 
 namespace kiln {
 
-/// Writes the state of a run every so many steps into one file, which is replaced in one stroke: whenever a run dies, the
-/// last complete checkpoint is there. A run that restarts from it on the same number of ranks goes on bit by bit as if it
-/// had never stopped.
+/// Writes the state of a run every so many steps into one file, which is replaced in one stroke: whenever a run dies,
+/// the last complete checkpoint is there. A run that restarts from it on the same number of ranks goes on bit by bit as
+/// if it had never stopped.
 class Checkpoint : public Observer {
  public:
   /// `identity` is the text of what must agree between the runs: model, time and method. every: steps; 0: never.

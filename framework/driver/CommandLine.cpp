@@ -43,8 +43,9 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
                "kiln");
   app.require_subcommand(1);
   app.set_version_flag("--version", version_line());
-  app.footer("Exit status: 0 done, 1 a comparison differs or an unforeseen error, 2 bad input or data file, 3 the solve "
-             "diverged.\nRun the computing commands on R ranks with mpirun -n R kiln …");
+  app.footer(
+      "Exit status: 0 done, 1 a comparison differs or an unforeseen error, 2 bad input or data file, 3 the solve "
+      "diverged.\nRun the computing commands on R ranks with mpirun -n R kiln …");
 
   CommandOptions options;
   std::string name, left, right, folder;
@@ -94,7 +95,8 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
       ->required();
   describe_app->callback([&] {
     command = [&]() -> int {
-      print(*communicator, name == whole_input ? describe(run_specification(), "Keys of an input file") : describe(name));
+      print(*communicator,
+            name == whole_input ? describe(run_specification(), "Keys of an input file") : describe(name));
       return exit_success;
     };
   });
@@ -111,8 +113,12 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
   compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required();
   compare_app->add_option("B", right, "the same kind; A's errors are relative to it")->required();
-  compare_app->add_option("--tolerance", tolerance, "largest relative difference")->capture_default_str()->check(CLI::NonNegativeNumber);
-  compare_app->add_option("--floor", floor, "values below it count as this large")->capture_default_str()->check(CLI::NonNegativeNumber);
+  compare_app->add_option("--tolerance", tolerance, "largest relative difference")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  compare_app->add_option("--floor", floor, "values below it count as this large")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   compare_app->callback([&] {
     command = [&]() -> int {
       int same = 0;

@@ -48,9 +48,14 @@ class Assembly {
       method_->initial(x_);
       scheme_->start(x_, 0.0);
     }
-    const Observer::Context context{*method_,        folder,     communicator, span_.first_step, span_.last_step,
-                                    span_.step,      {{"input", input.merged()},
-                                                      {"method", list.sublist("method").get<std::string>("type")}}};
+    const Observer::Context context{
+        *method_,
+        folder,
+        communicator,
+        span_.first_step,
+        span_.last_step,
+        span_.step,
+        {{"input", input.merged()}, {"method", list.sublist("method").get<std::string>("type")}}};
     const Teuchos::ParameterList& output = list.sublist("output");
     for (auto entry = output.begin(); entry != output.end(); ++entry) {
       const std::string& key = output.name(entry);
@@ -58,8 +63,8 @@ class Assembly {
       observers_.push_back(Registry<Observer>::create(output.sublist(key), context));
     }
     if (output.isSublist("checkpoint")) {
-      observers_.push_back(std::make_unique<Checkpoint>(context, *scheme_, output.sublist("checkpoint").get<int>("every"),
-                                                        identity));
+      observers_.push_back(
+          std::make_unique<Checkpoint>(context, *scheme_, output.sublist("checkpoint").get<int>("every"), identity));
     }
   }
 
@@ -182,9 +187,8 @@ void run(const CommandOptions& options, const Comm& communicator) {
   const Teuchos::ParameterList& list = input.list();
   const RunFolder folder(run_folder(list), *communicator);
 
-  auto assembly = located(input, [&] {
-    return std::make_unique<Assembly>(input, folder.path(), communicator, options.restart);
-  });
+  auto assembly =
+      located(input, [&] { return std::make_unique<Assembly>(input, folder.path(), communicator, options.restart); });
   const std::string type = list.sublist("method").get<std::string>("type");
   if (!options.quiet) {
     assembly->add(std::make_unique<ProgressObserver>(type, assembly->span().first_step, *communicator));
@@ -193,9 +197,12 @@ void run(const CommandOptions& options, const Comm& communicator) {
 
   RunReport report;
   nlohmann::json& facts = report.section("run");
-  facts = {{"title", list.get<std::string>("title")}, {"input", input.file()},
-           {"method", type},                          {"status", "complete"},
-           {"steps", assembly->span().last_step},     {"first_step", assembly->span().first_step},
+  facts = {{"title", list.get<std::string>("title")},
+           {"input", input.file()},
+           {"method", type},
+           {"status", "complete"},
+           {"steps", assembly->span().last_step},
+           {"first_step", assembly->span().first_step},
            {"step_s", assembly->span().step}};
   report.section("provenance") = provenance(*communicator);
 
@@ -212,8 +219,8 @@ void run(const CommandOptions& options, const Comm& communicator) {
   report_solve(report, totals);
   if (failure == nullptr) assembly->finish(report);
   const Seconds all = elapsed(total, *communicator);
-  report.section("time") = {{"setup_wall_s", setup.wall},   {"setup_cpu_s", setup.cpu},  {"loop_wall_s", stepping.wall},
-                            {"loop_cpu_s", stepping.cpu},   {"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
+  report.section("time") = {{"setup_wall_s", setup.wall}, {"setup_cpu_s", setup.cpu}, {"loop_wall_s", stepping.wall},
+                            {"loop_cpu_s", stepping.cpu}, {"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
   report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
   report.section("timers")["table"] = timers.table(communicator);
   write_report(report, folder.path(), communicator, options.quiet);

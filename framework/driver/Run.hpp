@@ -15,8 +15,8 @@ struct CommandOptions {
   bool quiet = false;                  ///< no progress bar, no table
 };
 
-/// `kiln run`: builds what the input names, marches it through its time span and writes the run folder. Throws what went
-/// wrong (Error.hpp); a diverged run's report says so. Collective.
+/// `kiln run`: builds what the input names, marches it through its time span and writes the run folder. Throws what
+/// went wrong (Error.hpp); a diverged run's report says so. Collective.
 void run(const CommandOptions& options, const Teuchos::RCP<const Communicator>& communicator);
 
 /// `kiln check`: builds everything `kiln run` would, in a temporary folder, and prints the merged input.

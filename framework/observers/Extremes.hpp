@@ -20,8 +20,8 @@ class Extremes : public Observer {
   Extremes(const Teuchos::ParameterList& list, const Context& context);
 
   void observe(const Moment& moment) override;
-  /// Section `observers`, key `extremes`: for each component `largest` and `smallest` of the whole run, earlier parts of
-  /// a restarted one included, with time and particle.
+  /// Section `observers`, key `extremes`: for each component `largest` and `smallest` of the whole run, earlier parts
+  /// of a restarted one included, with time and particle.
   void finish(RunReport& report) override;
 
  private:

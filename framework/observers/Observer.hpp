@@ -20,9 +20,9 @@ struct Moment {
 };
 
 /// Looks at a run after its initial state and after every step: writes fields, probes, checkpoints, collects snapshots.
-/// Calls are collective. Registered observers are blocks of `output:` in the input, by their name. Constructors check and
-/// throw; files are made or changed at the first `observe`, when every observer of the run has passed, so that a mistake
-/// in one block never costs the results of an earlier run.
+/// Calls are collective. Registered observers are blocks of `output:` in the input, by their name. Constructors check
+/// and throw; files are made or changed at the first `observe`, when every observer of the run has passed, so that a
+/// mistake in one block never costs the results of an earlier run.
 class Observer {
  public:
   struct Context {

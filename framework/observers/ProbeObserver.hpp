@@ -50,7 +50,7 @@ class ProbeObserver : public Observer {
   Kokkos::View<LocalIndex*, Device> entries_;  ///< of u_, one a value; −1: on another rank
   VectorView picked_;
   VectorView::HostMirror picked_host_;
-  std::vector<double> values_;  ///< probe by probe, component by component; on rank 0
+  std::vector<double> values_;   ///< probe by probe, component by component; on rank 0
   std::unique_ptr<CsvLog> log_;  ///< null before the first moment
 };
 

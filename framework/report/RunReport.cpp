@@ -19,7 +19,8 @@ nlohmann::json read_report(const std::filesystem::path& folder, const Communicat
     return std::nullopt;
   });
   nlohmann::json facts = nlohmann::json::parse(broadcast(communicator, text.str()), nullptr, false);
-  if (!facts.is_object()) throw FileError(path, "", "is no JSON object", "a report that `kiln run` or `kiln train` wrote");
+  if (!facts.is_object())
+    throw FileError(path, "", "is no JSON object", "a report that `kiln run` or `kiln train` wrote");
   return facts;
 }
 

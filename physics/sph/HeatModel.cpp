@@ -165,7 +165,8 @@ std::vector<std::pair<std::string, double>> HeatModel::facts() const {
   const double mine = static_cast<double>(domain_.pairs.neighbours.extent(0));
   double pairs = 0.0;
   Teuchos::reduceAll(*domain_.rows->getComm(), Teuchos::REDUCE_SUM, 1, &mine, &pairs);
-  return {{"pairs", pairs}, {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
+  return {{"pairs", pairs},
+          {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
 }
 
 }  // namespace kiln
