@@ -10,10 +10,10 @@ TEST_F(AliasTest, RepeatsValuesAndBlocks) {
       "model:\n"
       "  spacing: &length 2 mm\n"
       "  origin: [*length, 0, *length]\n"
-      "  heat_source: &beam {type: gaussian beam, power: 40 W, width: 1 mm}\n"
+      "  heat_source: &lamp {type: gaussian lamp, power: 40 W, width: 1 mm}\n"
       "  more_sources:\n"
-      "    - *beam\n"
-      "    - {<<: *beam, power: 50 W}\n");
+      "    - *lamp\n"
+      "    - {<<: *lamp, power: 50 W}\n");
   const Teuchos::ParameterList& block = input.list().sublist("model");
   EXPECT_EQ(block.get<Teuchos::Array<double>>("origin"), reals({2e-3, 0., 2e-3}));
   const Teuchos::ParameterList& sources = block.sublist("more_sources");
@@ -26,8 +26,8 @@ TEST_F(AliasTest, MergesSeveralBlocksTheFirstWins) {
   const Input input = read_text(
       "model:\n"
       "  spacing: 1\n"
-      "  heat_source: &a {type: gaussian beam, power: 1, width: 2}\n"
-      "  more_sources: [&b {type: gaussian beam, power: 3, velocity: [4, 5]}, {<<: [*a, *b], width: 6}]\n");
+      "  heat_source: &a {type: gaussian lamp, power: 1, width: 2}\n"
+      "  more_sources: [&b {type: gaussian lamp, power: 3, velocity: [4, 5]}, {<<: [*a, *b], width: 6}]\n");
   const Teuchos::ParameterList& merged = input.list().sublist("model").sublist("more_sources").sublist("1");
   EXPECT_EQ(merged.get<double>("power"), 1);
   EXPECT_EQ(merged.get<double>("width"), 6);

@@ -7,7 +7,7 @@ class IncludeTest : public InputTest {};
 
 TEST_F(IncludeTest, MergesUnderneath) {
   write("common/base.yaml", "title: base\nmodel:\n  spacing: 1 mm\n  porosity: 2 %\n" +
-                                std::string("  heat_source: {type: gaussian beam, power: 40 W, width: 9}\n"));
+                                std::string("  heat_source: {type: gaussian lamp, power: 40 W, width: 9}\n"));
   write("common/more.yaml", "include: base.yaml\ntime: {step: 1 ms}\ntitle: more\n");
   const Input input = read_text("include: common/more.yaml\nmodel:\n  porosity: 3 %\n  heat_source: {power: 50 W}\n");
   EXPECT_EQ(input.list().get<std::string>("title"), "more");

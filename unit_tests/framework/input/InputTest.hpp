@@ -36,6 +36,6 @@ class InputTest : public testing::Test {
 inline Teuchos::Array<double> reals(const std::vector<double>& values) { return Teuchos::Array<double>(values); }
 
 /// A model block with what is required, to which a test adds.
-inline const std::string model = "model:\n  spacing: 1 mm\n  heat_source: {type: gaussian beam, power: 40 W}\n";
+inline const std::string model = "model:\n  spacing: 1 mm\n  heat_source: {type: gaussian lamp, power: 40 W}\n";
 
 }  // namespace kiln::test

@@ -14,7 +14,7 @@ class MistakesTest : public InputTest {
   }
 };
 
-const std::string sources = "gaussian beam, uniform";
+const std::string sources = "gaussian lamp, uniform";
 
 TEST_F(MistakesTest, AreNoneInAGoodFile) { expect({{model, {}}}); }
 
@@ -25,10 +25,10 @@ TEST_F(MistakesTest, UnknownAndDuplicateKeys) {
       {model + "time:\n  stepp: 1 s\n  xyzzy: 2\n",
        {"run.yaml:5:3: time.stepp: unknown key; expected one of: end, step, iterations, jacobian; did you mean 'step'?",
         "run.yaml:6:3: time.xyzzy: unknown key; expected one of: end, step, iterations, jacobian"}},
-      {model + "  kernel: {type: wendland c2, radus: 2}\n",
+      {model + "  kernel: {type: wendland c9, radus: 2}\n",
        {"run.yaml:4:31: model.kernel.radus: unknown key; expected one of: type, radius; did you mean 'radius'?"}},
       {model + "output:\n  point_probe: {}\n",
-       {"run.yaml:5:3: output.point_probe: unknown key; expected one of: directory, fields, point_probes; did you mean "
+       {"run.yaml:5:3: output.point_probe: unknown key; expected one of: directory, frames, point_probes; did you mean "
         "'point_probes'?"}},
       {model + "output: {point_probes: {points: [{name: a, position: [0, 0, 0], colour: red}]}}\n",
        {"run.yaml:4:65: output.point_probes.points.0.colour: unknown key; expected one of: unit_of_value, name, "
@@ -49,7 +49,7 @@ TEST_F(MistakesTest, MissingKeys) {
       {"model:\n",
        {"run.yaml:1:1: model.spacing: missing; expected a length in m above 0",
         "run.yaml:1:1: model.heat_source: missing; expected a test source, one of: " + sources}},
-      {"title: x\nmodel:\n  spacing: 1\n  heat_source: gaussian beam\n",
+      {"title: x\nmodel:\n  spacing: 1\n  heat_source: gaussian lamp\n",
        {"run.yaml:4:16: model.heat_source.power: missing; expected a power in W above 0"}},
       {"model: {spacing: 1, heat_source: {power: 4}}\n",
        {"run.yaml:1:21: model.heat_source: the key 'type' is missing; expected a test source, one of: " + sources}},
@@ -91,8 +91,8 @@ TEST_F(MistakesTest, WrongTypes) {
       {model + "time: {jacobian: diagnal}\n",
        {"run.yaml:4:18: time.jacobian: 'diagnal' is no choice; expected one of: diagonal, sparse; did you mean "
         "'diagonal'?"}},
-      {model + "output: {fields: 10}\n",
-       {"run.yaml:4:18: output.fields: a single value '10' is given; expected a block of the test watcher 'fields'"}},
+      {model + "output: {frames: 10}\n",
+       {"run.yaml:4:18: output.frames: a single value '10' is given; expected a block of the test watcher 'frames'"}},
       {model + "output: {point_probes: {points: {name: a}}}\n",
        {"run.yaml:4:25: output.point_probes.points: a block is given; expected a list of blocks with the keys: "
         "unit_of_value, name, position"}},
@@ -175,17 +175,17 @@ TEST_F(MistakesTest, Lists) {
 
 TEST_F(MistakesTest, Components) {
   expect({
-      {model + "  kernel: cubic splin\n",
-       {"run.yaml:4:11: model.kernel: there is no test kernel 'cubic splin'; expected one of: cubic spline, wendland "
-        "c2; did you mean 'cubic spline'?"}},
+      {model + "  kernel: conic splin\n",
+       {"run.yaml:4:11: model.kernel: there is no test kernel 'conic splin'; expected one of: conic spline, wendland "
+        "c9; did you mean 'conic spline'?"}},
       {model + "  kernel: {type: Cubic Spline}\n",
-       {"run.yaml:4:18: model.kernel.type: there is no test kernel 'Cubic Spline'; expected one of: cubic spline, "
-        "wendland c2; did you mean 'cubic spline'?"}},
+       {"run.yaml:4:18: model.kernel.type: there is no test kernel 'Cubic Spline'; expected one of: conic spline, "
+        "wendland c9; did you mean 'conic spline'?"}},
       {model + "  kernel: {type: [a]}\n",
-       {"run.yaml:4:18: model.kernel.type: a list is given; expected a test kernel, one of: cubic spline, wendland "
-        "c2"}},
+       {"run.yaml:4:18: model.kernel.type: a list is given; expected a test kernel, one of: conic spline, wendland "
+        "c9"}},
       {model + "  kernel: [a]\n",
-       {"run.yaml:4:11: model.kernel: a list is given; expected a test kernel, one of: cubic spline, wendland c2"}},
+       {"run.yaml:4:11: model.kernel: a list is given; expected a test kernel, one of: conic spline, wendland c9"}},
       {model + "  more_sources: uniform\n",
        {"run.yaml:4:17: model.more_sources: a single value 'uniform' is given; expected a list, each item a test "
         "source, one of: " +
@@ -193,8 +193,8 @@ TEST_F(MistakesTest, Components) {
       {model + "  more_sources: [uniform, unifrom]\n",
        {"run.yaml:4:27: model.more_sources.1: there is no test source 'unifrom'; expected one of: " + sources +
         "; did you mean 'uniform'?"}},
-      {model + "output: {fields: {type: point probes}}\n",
-       {"run.yaml:4:25: output.fields.type: a single value 'point probes' is given; expected 'fields', or no type"}},
+      {model + "output: {frames: {type: point probes}}\n",
+       {"run.yaml:4:25: output.frames.type: a single value 'point probes' is given; expected 'frames', or no type"}},
   });
 }
 
@@ -216,20 +216,20 @@ TEST_F(MistakesTest, OfOneFileAreToldTogetherByPosition) {
         "  step: -1\n"
         "  end: 4 W\n"
         "  end: 4\n"
-        "output: {fields: {every: 1.0}, extra: 1}\n"
+        "output: {frames: {every: 1.0}, extra: 1}\n"
         "model:\n"
         "  heat_source: {type: gaussian bean, power: 40}\n"
-        "  kernel: {type: wendland c2, radius: .inf}\n",
+        "  kernel: {type: wendland c9, radius: .inf}\n",
         {"run.yaml:1:8: title: a list is given; expected a text",
          "run.yaml:3:9: time.step: '-1' is not above 0; expected a time in s above 0 and at most 0.5 s",
          "run.yaml:4:8: time.end: '4 W' is a power (kg m²/s³); expected a time in s above 0",
          "run.yaml:5:3: time.end: duplicate key; expected each key once; it is given at run.yaml:4:3 already",
-         "run.yaml:6:26: output.fields.every: '1.0' is not an integer; expected an integer at least 1; did you mean "
+         "run.yaml:6:26: output.frames.every: '1.0' is not an integer; expected an integer at least 1; did you mean "
          "'1'?",
-         "run.yaml:6:32: output.extra: unknown key; expected one of: directory, fields, point_probes",
+         "run.yaml:6:32: output.extra: unknown key; expected one of: directory, frames, point_probes",
          "run.yaml:7:1: model.spacing: missing; expected a length in m above 0",
          "run.yaml:8:23: model.heat_source.type: there is no test source 'gaussian bean'; expected one of: " + sources +
-             "; did you mean 'gaussian beam'?",
+             "; did you mean 'gaussian lamp'?",
          "run.yaml:9:39: model.kernel.radius: '.inf' is not finite; expected a number above 0 and at most 3"}}});
 }
 

@@ -11,8 +11,8 @@ TEST_F(OverrideTest, SetsValuesBlocksAndItems) {
   const Input input = read_text(
       model + probes, {"title=a = b", "model.heat_source.power=50 W", "model.origin=[1 mm, 2, 3]", "model.origin.2=4",
                        "output.point_probes.points.0.name=first",
-                       "output.point_probes.points.1={name: b, position: [1, 1, 1]}", "output.fields={every: 3}",
-                       "time.step=1 ms", "time.step=2 ms", "model.kernel=wendland c2", "model.kernel.radius=3"});
+                       "output.point_probes.points.1={name: b, position: [1, 1, 1]}", "output.frames={every: 3}",
+                       "time.step=1 ms", "time.step=2 ms", "model.kernel=wendland c9", "model.kernel.radius=3"});
   const Teuchos::ParameterList& list = input.list();
   EXPECT_EQ(list.get<std::string>("title"), "a = b");
   EXPECT_EQ(list.sublist("model").sublist("heat_source").get<double>("power"), 50);
@@ -20,7 +20,7 @@ TEST_F(OverrideTest, SetsValuesBlocksAndItems) {
   const Teuchos::ParameterList& points = list.sublist("output").sublist("point_probes").sublist("points");
   EXPECT_EQ(points.sublist("0").get<std::string>("name"), "first");
   EXPECT_EQ(points.sublist("1").get<std::string>("name"), "b");
-  EXPECT_EQ(list.sublist("output").sublist("fields").get<int>("every"), 3);
+  EXPECT_EQ(list.sublist("output").sublist("frames").get<int>("every"), 3);
   EXPECT_EQ(list.sublist("time").get<double>("step"), 2e-3) << "the last one wins";
   EXPECT_EQ(list.sublist("model").sublist("kernel").get<double>("radius"), 3);
   EXPECT_EQ(to_string(input.location("time.step")), "--set time.step=2 ms");

@@ -11,16 +11,16 @@ const std::string full =
     "  point_probes:\n"
     "    points:\n"
     "      - {name: 'true: yes', position: [0.1 mm, 0, 0]}\n"
-    "  fields:\n"
+    "  frames:\n"
     "  directory: out/1\n"
     "time: {iterations: 20, end: 4 ms, step: 4 us}\n"
     "model:\n"
     "  heat_source:\n"
-    "    type: gaussian beam\n"
+    "    type: gaussian lamp\n"
     "    velocity: [0.5 m/s, 0 m/s]\n"
     "    power: 40 W\n"
     "  spacing: 50 um\n"
-    "  kernel: wendland c2\n"
+    "  kernel: wendland c9\n"
     "  more_sources: [uniform, {type: uniform, conductance: 30 W/m/K}]\n"
     "  tags: [one, 'null', \"a, b\"]\n"
     "  count: [3, +4]\n"
@@ -40,14 +40,14 @@ TEST_F(ReadTest, FillsAllKindsOfEntries) {
             (Teuchos::Array<std::string>(Lines{"one", "null", "a, b"})));
   EXPECT_TRUE(block.get<bool>("periodic"));
   EXPECT_FALSE(block.isParameter("table"));
-  EXPECT_EQ(block.sublist("kernel").get<std::string>("type"), "wendland c2");
+  EXPECT_EQ(block.sublist("kernel").get<std::string>("type"), "wendland c9");
   EXPECT_EQ(block.sublist("kernel").get<double>("radius"), 2);
-  EXPECT_EQ(block.sublist("heat_source").sublist("shape").get<std::string>("type"), "wendland c2");
+  EXPECT_EQ(block.sublist("heat_source").sublist("shape").get<std::string>("type"), "wendland c9");
   EXPECT_EQ(block.sublist("more_sources").sublist("0").get<double>("conductance"), 25);
   EXPECT_EQ(block.sublist("more_sources").sublist("1").get<double>("conductance"), 30);
   EXPECT_EQ(list.sublist("time").get<int>("iterations"), 20);
   EXPECT_EQ(list.sublist("time").get<std::string>("jacobian"), "diagonal");
-  EXPECT_EQ(list.sublist("output").sublist("fields").get<int>("every"), 1);
+  EXPECT_EQ(list.sublist("output").sublist("frames").get<int>("every"), 1);
   EXPECT_EQ(list.sublist("output").sublist("point_probes").get<std::string>("type"), "point probes");
 }
 
@@ -67,8 +67,8 @@ TEST_F(ReadTest, SectionsWithDefaultsMayBeLeftOut) {
   EXPECT_EQ(input.list().sublist("time").get<double>("step"), 0.1);
   EXPECT_EQ(input.list().sublist("time").name(), "time");
   EXPECT_EQ(input.list().sublist("output").get<std::string>("directory"), "results");
-  EXPECT_FALSE(input.list().sublist("output").isSublist("fields"));
-  EXPECT_EQ(input.list().sublist("model").sublist("kernel").get<std::string>("type"), "cubic spline");
+  EXPECT_FALSE(input.list().sublist("output").isSublist("frames"));
+  EXPECT_EQ(input.list().sublist("model").sublist("kernel").get<std::string>("type"), "conic spline");
 }
 
 TEST_F(ReadTest, CreatesComponents) {
@@ -108,15 +108,15 @@ TEST_F(ReadTest, MergedTextIsCanonicalAndReadsBack) {
             "  tags: [one, \"null\", \"a, b\"]\n"
             "  periodic: true\n"
             "  kernel:\n"
-            "    type: wendland c2\n"
+            "    type: wendland c9\n"
             "    radius: 2\n"
             "  heat_source:\n"
-            "    type: gaussian beam\n"
+            "    type: gaussian lamp\n"
             "    power: 40\n"
             "    width: 5e-05\n"
             "    velocity: [0.5, 0]\n"
             "    shape:\n"
-            "      type: wendland c2\n"
+            "      type: wendland c9\n"
             "      radius: 2\n"
             "  more_sources:\n"
             "    - type: uniform\n"
@@ -130,8 +130,8 @@ TEST_F(ReadTest, MergedTextIsCanonicalAndReadsBack) {
             "  jacobian: diagonal\n"
             "output:\n"
             "  directory: out/1\n"
-            "  fields:\n"
-            "    type: fields\n"
+            "  frames:\n"
+            "    type: frames\n"
             "    every: 1\n"
             "  point_probes:\n"
             "    type: point probes\n"
@@ -139,7 +139,7 @@ TEST_F(ReadTest, MergedTextIsCanonicalAndReadsBack) {
             "      - name: \"true: yes\"\n"
             "        position: [0.0001, 0, 0]\n");
   EXPECT_EQ(read_text(input.merged()).merged(), input.merged());
-  EXPECT_EQ(to_yaml(input.list().sublist("model").sublist("kernel")), "type: wendland c2\nradius: 2\n");
+  EXPECT_EQ(to_yaml(input.list().sublist("model").sublist("kernel")), "type: wendland c9\nradius: 2\n");
   const Input empty_list = read_text(model + "  more_sources: []\n");
   EXPECT_EQ(read_text(empty_list.merged()).merged(), empty_list.merged());
 }

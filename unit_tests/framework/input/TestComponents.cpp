@@ -9,7 +9,7 @@ class CubicSpline : public Kernel {
   CubicSpline(const Teuchos::ParameterList&, const NoContext&) {}
   double radius() const override { return 2; }
 };
-KILN_REGISTER(Kernel, CubicSpline, "cubic spline", "Piecewise cubic");
+KILN_REGISTER(Kernel, CubicSpline, "conic spline", "Piecewise conic");
 
 class Wendland : public Kernel {
  public:
@@ -24,7 +24,7 @@ class Wendland : public Kernel {
  private:
   double radius_;
 };
-KILN_REGISTER(Kernel, Wendland, "wendland c2", "Compactly supported polynomial");
+KILN_REGISTER(Kernel, Wendland, "wendland c9", "Compactly supported polynomial");
 
 class GaussianBeam : public Source {
  public:
@@ -32,13 +32,13 @@ class GaussianBeam : public Source {
     Specification s;
     s.real("power", "absorbed power").unit("W").above(0);
     s.real("width", "standard deviation").unit("m").above(0).defaults_to(5e-5);
-    s.reals("velocity", "of the beam").unit("m/s").length(2).optional();
-    s.component<Kernel>("shape", "how it is smoothed").defaults_to("wendland c2");
+    s.reals("velocity", "of the lamp").unit("m/s").length(2).optional();
+    s.component<Kernel>("shape", "how it is smoothed").defaults_to("wendland c9");
     return s;
   }
   GaussianBeam(const Teuchos::ParameterList&, const NoContext&) {}
 };
-KILN_REGISTER(Source, GaussianBeam, "gaussian beam", "A moving laser");
+KILN_REGISTER(Source, GaussianBeam, "gaussian lamp", "A moving laser");
 
 class Uniform : public Source {
  public:
@@ -60,7 +60,7 @@ class Fields : public Watcher {
   }
   Fields(const Teuchos::ParameterList&, const NoContext&) {}
 };
-KILN_REGISTER(Watcher, Fields, "fields", "Writes the state");
+KILN_REGISTER(Watcher, Fields, "frames", "Writes the state");
 
 class PointProbes : public Watcher {
  public:
@@ -89,7 +89,7 @@ Specification run_specification() {
   model.texts("tags", "words for the reader").optional();
   model.file("table", "of the material").optional();
   model.flag("periodic", "whether opposite faces are one").defaults_to(false);
-  model.component<Kernel>("kernel", "smoothing kernel").defaults_to("cubic spline");
+  model.component<Kernel>("kernel", "smoothing kernel").defaults_to("conic spline");
   model.component<Source>("heat_source", "what heats the part");
   model.components<Source>("more_sources", "further ones").optional();
 

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "framework/files/CsvTable.hpp"
+#include "framework/files/CsvTable.hpp"
+#include "framework/observers/Extremes.hpp"
 #include "framework/observers/FieldObserver.hpp"
 #include "framework/observers/NearestParticle.hpp"
 #include "framework/observers/ProbeObserver.hpp"
@@ -136,7 +138,8 @@ TEST(ProbeObserver, ARestartCutsLaterRowsAndContinues) {
   world()->barrier();
   EXPECT_EQ(contents_of(parts / "probes.csv"), contents_of(whole / "probes.csv"));
   EXPECT_EQ(report_parts.facts(), report_whole.facts());
-  EXPECT_THROW(ProbeObserver(probe_list({{"other", {0, 0, 0}}}), context_of(method, parts, 3)), FileError);
+  ProbeObserver other(probe_list({{"other", {0, 0, 0}}}), context_of(method, parts, 3));
+  EXPECT_THROW(run(other, method, 3, last_step), FileError);
 }
 
 TEST(ProbeObserver, ListsAllProbesOutside) {
@@ -217,9 +220,90 @@ TEST(FieldObserver, ARestartContinues) {
   EXPECT_EQ(file.integers("step").values, (std::vector<long long>{0, 2, 4, 6, 7}));
 }
 
+TEST(FieldObserver, KeepsTheCoordinatesOfAReducedMethod) {
+  TestFolder folder;
+  ReducedStandIn method;
+  Teuchos::ParameterList list("output.fields");
+  list.set("every", 4);
+  {
+    FieldObserver observer(list, context_of(method, folder));
+    for (int step = 0; step <= last_step; ++step) {
+      observer.observe({step, last_step, step * step_length, ReducedStandIn::reduced_unknown(step), {}});
+    }
+  }
+  const auto file = hdf5::File::read(folder / "run.h5", world());
+  EXPECT_EQ(file.reals("coordinates", {3, 3}).values, (std::vector<double>{0, 0, -0.0, 4, 8, -4, 7, 14, -7}));
+  EXPECT_EQ(file.reals("temperature", {3, 24}).values[24 + 5], StandInMethod::temperature(5, 4));
+}
+
+TEST(FieldObserver, AFullStateHasNoCoordinates) {
+  TestFolder folder;
+  StandInMethod method;
+  Teuchos::ParameterList list("output.fields");
+  list.set("every", 7);
+  {
+    FieldObserver observer(list, context_of(method, folder));
+    run(observer, method, 0, last_step);
+  }
+  EXPECT_FALSE(hdf5::File::read(folder / "run.h5", world()).has("coordinates"));
+}
+
+TEST(Extremes, FindsValueParticleAndTimeOnAnyRank) {
+  TestFolder folder;
+  StandInMethod method;
+  Teuchos::ParameterList list("output.extremes");
+  list.set("every", 2);
+  RunReport report;
+  Extremes observer(list, context_of(method, folder));
+  run(observer, method, 0, last_step);
+  observer.finish(report);
+  if (world()->getRank() != 0) return;
+  const nlohmann::json& temperature = report.facts()["observers"]["extremes"]["temperature"];
+  EXPECT_EQ(temperature["largest"], StandInMethod::temperature(23, last_step));
+  EXPECT_EQ(temperature["largest_particle"], 23);
+  EXPECT_DOUBLE_EQ(temperature["largest_time_s"], last_step * step_length);
+  EXPECT_EQ(temperature["smallest"], StandInMethod::temperature(0, 0));
+  EXPECT_EQ(temperature["smallest_particle"], 0);
+  EXPECT_EQ(report.facts()["observers"]["extremes"]["phase"]["smallest_particle"], 23);
+  EXPECT_EQ(read_csv(folder.path() / "extremes.csv").rows.size(), 5u);
+}
+
+TEST(Extremes, ARestartKeepsEarlierRows) {
+  TestFolder whole, parts;
+  StandInMethod method;
+  Teuchos::ParameterList list("output.extremes");
+  list.set("every", 1);
+  RunReport report_whole, report_parts;
+  Extremes uninterrupted(list, context_of(method, whole));
+  run(uninterrupted, method, 0, last_step);
+  uninterrupted.finish(report_whole);
+  {
+    Extremes interrupted(list, context_of(method, parts));
+    run(interrupted, method, 0, 5);
+  }
+  world()->barrier();
+  Extremes continued(list, context_of(method, parts, 3));
+  run(continued, method, 3, last_step);
+  continued.finish(report_parts);
+  world()->barrier();
+  EXPECT_EQ(contents_of(parts / "extremes.csv"), contents_of(whole / "extremes.csv"));
+  EXPECT_EQ(report_parts.facts(), report_whole.facts());
+}
+
+TEST(Observers, ConstructorsTouchNoFile) {
+  TestFolder folder;
+  StandInMethod method;
+  Teuchos::ParameterList every("output.every");
+  every.set("every", 1);
+  const FieldObserver fields(every, context_of(method, folder));
+  const Extremes extremes(every, context_of(method, folder));
+  const ProbeObserver probes(probe_list({{"one", {0, 0, 0}}}), context_of(method, folder));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(Observers, AreRegisteredByTheirBlocksNames) {
   const auto names = catalogue::names(Observer::category);
-  for (const char* name : {"fields", "probes"}) {
+  for (const char* name : {"extremes", "fields", "probes"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
 }

@@ -7,6 +7,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/method/Method.hpp"
+#include "framework/model/DegreesOfFreedom.hpp"
 
 namespace kiln {
 
@@ -54,7 +55,7 @@ class StandInMethod : public Method {
   void state(ConstVectorView x, VectorView u) const override { Kokkos::deep_copy(u, x); }
   void report(nlohmann::json&) const override {}
 
-  Teuchos::RCP<const Map> coordinates() const override { throw NotOffered("StandInMethod", "coordinates"); }
+  Teuchos::RCP<const Map> coordinates() const override { return degree_of_freedom_map(map_, 2); }
   LocalIndex row_size() const override { throw NotOffered("StandInMethod", "row_size"); }
   void initial(VectorView) const override { throw NotOffered("StandInMethod", "initial"); }
   void evaluate(ConstVectorView, double, VectorView, VectorView) override {
@@ -72,6 +73,27 @@ class StandInMethod : public Method {
   Teuchos::RCP<const Map> map_;
   std::vector<GlobalIndex> ids_;
   PositionView positions_;
+};
+
+/// The same particles behind three coordinates: û = (step, 2 step, −step) on every rank.
+class ReducedStandIn : public StandInMethod {
+ public:
+  Teuchos::RCP<const Map> coordinates() const override {
+    return Teuchos::rcp(new Map(3, 0, Tpetra::getDefaultComm(), Tpetra::LocallyReplicated));
+  }
+  void state(ConstVectorView x, VectorView u) const override {
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x);
+    Kokkos::deep_copy(u, unknown(static_cast<int>(host(0))));
+  }
+  static VectorView reduced_unknown(int step) {
+    VectorView x("kiln::test::coordinates", 3);
+    const auto host = Kokkos::create_mirror_view(x);
+    host(0) = step;
+    host(1) = 2.0 * step;
+    host(2) = -step;
+    Kokkos::deep_copy(x, host);
+    return x;
+  }
 };
 
 }  // namespace kiln

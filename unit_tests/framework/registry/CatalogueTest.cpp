@@ -9,22 +9,22 @@ namespace {
 
 TEST(Catalogue, KnowsWhatWasRegistered) {
   using Names = std::vector<std::string>;
-  EXPECT_EQ(catalogue::names("test kernel"), (Names{"cubic spline", "wendland c2"}));
-  EXPECT_EQ(catalogue::names("test source"), (Names{"gaussian beam", "uniform"}));
-  EXPECT_EQ(catalogue::names("test watcher"), (Names{"fields", "point probes"}));
+  EXPECT_EQ(catalogue::names("test kernel"), (Names{"conic spline", "wendland c9"}));
+  EXPECT_EQ(catalogue::names("test source"), (Names{"gaussian lamp", "uniform"}));
+  EXPECT_EQ(catalogue::names("test watcher"), (Names{"frames", "point probes"}));
   EXPECT_EQ(catalogue::names("nothing"), Names{});
-  EXPECT_EQ(catalogue::find("test kernel", "wendland c2", "").summary, "Compactly supported polynomial");
+  EXPECT_EQ(catalogue::find("test kernel", "wendland c9", "").summary, "Compactly supported polynomial");
 }
 
 TEST(Catalogue, RefusesANameTwice) {
-  Registration again{Kernel::category, "cubic spline", "once more", nullptr, "Again.cpp", 7, {}, {}, {}};
-  const int line = catalogue::find(Kernel::category, "cubic spline", "").line;
+  Registration again{Kernel::category, "conic spline", "once more", nullptr, "Again.cpp", 7, {}, {}, {}};
+  const int line = catalogue::find(Kernel::category, "conic spline", "").line;
   try {
     catalogue::add(again);
     ADD_FAILURE() << "the second registration was taken";
   } catch (const std::logic_error& error) {
     const std::string text = error.what();
-    EXPECT_NE(text.find("test kernel 'cubic spline' is registered twice: "), std::string::npos) << text;
+    EXPECT_NE(text.find("test kernel 'conic spline' is registered twice: "), std::string::npos) << text;
     EXPECT_NE(text.find("TestComponents.cpp:" + std::to_string(line) + " and Again.cpp:7"), std::string::npos) << text;
   }
   EXPECT_EQ(catalogue::names(Kernel::category).size(), 2u);
@@ -32,13 +32,13 @@ TEST(Catalogue, RefusesANameTwice) {
 
 TEST(Catalogue, SuggestsTheNearestName) {
   try {
-    catalogue::find("test kernel", "cubic splien", "model.kernel");
+    catalogue::find("test kernel", "conic splien", "model.kernel");
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "model.kernel: there is no test kernel 'cubic splien'; expected one of: cubic spline, wendland c2; did "
-        "you mean 'cubic spline'?");
+        "model.kernel: there is no test kernel 'conic splien'; expected one of: conic spline, wendland c9; did "
+        "you mean 'conic spline'?");
   }
 }
 

@@ -43,13 +43,13 @@ const std::map<std::string, std::string> values = {
     {"spacing", "1 mm"}, {"heat_source", "uniform"}, {"power", "40 W"}, {"name", "a"}, {"position", "[0, 0, 0]"}};
 
 TEST_F(DescribeTest, TellsAllOfAComponent) {
-  EXPECT_EQ(describe("gaussian beam"),
-            "gaussian beam (test source): A moving laser\n"
+  EXPECT_EQ(describe("gaussian lamp"),
+            "gaussian lamp (test source): A moving laser\n"
             "  key       type         unit  default      values\n"
             "  power     number       W     required     above 0                     absorbed power\n"
             "  width     number       m     5e-05        above 0                     standard deviation\n"
-            "  velocity  2 numbers    m/s   optional                                 of the beam\n"
-            "  shape     test kernel        wendland c2  cubic spline | wendland c2  how it is smoothed\n");
+            "  velocity  2 numbers    m/s   optional                                 of the lamp\n"
+            "  shape     test kernel        wendland c9  conic spline | wendland c9  how it is smoothed\n");
 }
 
 TEST_F(DescribeTest, IndentsNestedKeys) {
@@ -65,10 +65,10 @@ TEST_F(DescribeTest, IndentsNestedKeys) {
 TEST_F(DescribeTest, TellsOfCategoriesAndEmptyComponents) {
   EXPECT_EQ(describe("test kernel"),
             "test kernel: a kind of component\n"
-            "  cubic spline  Piecewise cubic\n"
-            "  wendland c2   Compactly supported polynomial\n");
-  EXPECT_EQ(describe("cubic spline").substr(0, describe("cubic spline").find("\n\n")),
-            "cubic spline (test kernel): Piecewise cubic\n  no keys\n");
+            "  conic spline  Piecewise conic\n"
+            "  wendland c9   Compactly supported polynomial\n");
+  EXPECT_EQ(describe("conic spline").substr(0, describe("conic spline").find("\n\n")),
+            "conic spline (test kernel): Piecewise conic\n  no keys\n");
 }
 
 TEST_F(DescribeTest, SuggestsNamesAndCategories) {
@@ -81,8 +81,8 @@ TEST_F(DescribeTest, SuggestsNamesAndCategories) {
     return std::string();
   };
   const std::string start = "there is no component or category ";
-  EXPECT_EQ(message([] { describe("gausian beam"); }),
-            start + "'gausian beam'; expected a name that `kiln list` shows; did you mean 'gaussian beam'?");
+  EXPECT_EQ(message([] { describe("gausian lamp"); }),
+            start + "'gausian lamp'; expected a name that `kiln list` shows; did you mean 'gaussian lamp'?");
   EXPECT_EQ(message([] { describe("test kernl"); }),
             start + "'test kernl'; expected a name that `kiln list` shows; did you mean 'test kernel'?");
   EXPECT_EQ(message([] { template_of("unifrm"); }),
@@ -100,14 +100,14 @@ TEST_F(DescribeTest, ListsComponents) {
 }
 
 TEST_F(DescribeTest, TemplateHasEveryKey) {
-  EXPECT_EQ(template_of("gaussian beam"),
+  EXPECT_EQ(template_of("gaussian lamp"),
             "# test source: A moving laser\n"
-            "type: gaussian beam  # test source\n"
+            "type: gaussian lamp  # test source\n"
             "power:               # required: a power in W above 0; absorbed power\n"
             "width: 5e-05         # standard deviation (m, above 0)\n"
-            "# velocity:          # optional: a list of 2 numbers in m/s; of the beam\n"
+            "# velocity:          # optional: a list of 2 numbers in m/s; of the lamp\n"
             "shape:               # how it is smoothed\n"
-            "  type: wendland c2  # a test kernel, one of: cubic spline, wendland c2\n"
+            "  type: wendland c9  # a test kernel, one of: conic spline, wendland c9\n"
             "  radius: 2          # support in multiples of h (above 0 and at most 3)\n");
 }
 
