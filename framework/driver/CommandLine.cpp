@@ -1,18 +1,23 @@
 #include "framework/driver/CommandLine.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <Teuchos_CommHelpers.hpp>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 
+#include "framework/base/Error.hpp"
 #include "framework/driver/ExitStatus.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/files/Compare.hpp"
 #include "framework/registry/Describe.hpp"
+#include "framework/registry/Nearest.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
 #include "framework/report/RunReport.hpp"
@@ -30,7 +35,29 @@ void print(const Communicator& communicator, const std::string& text) {
 void add_input_options(CLI::App* command, CommandOptions& options) {
   command->add_option("FILE", options.file, "input file (YAML)")->required();
   command->add_option("--set", options.overrides, "change one entry of the input, e.g. --set method.type=gnat")
-      ->type_name("PATH=VALUE");
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+}
+
+/// A finite number of at least 0; the library's own check lets NaN pass.
+const CLI::Validator non_negative(
+    [](const std::string& text) {
+      char* end = nullptr;
+      const double value = std::strtod(text.c_str(), &end);
+      const bool valid = end != text.c_str() && *end == '\0' && std::isfinite(value) && value >= 0.0;
+      return valid ? std::string() : fmt::format("'{}' is not a finite number of at least 0", text);
+    },
+    "");
+
+/// What is wrong with a command line: the library does not say which word it took for no command.
+std::string message_of(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> words = app.remaining();
+  if (!app.get_subcommands().empty() || words.empty() || words.front().substr(0, 1) == "-") return error.what();
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
+  return InputError("", fmt::format("there is no command '{}'", words.front()),
+                    fmt::format("one of: {}", fmt::join(commands, ", ")), nearest(words.front(), commands))
+      .what();
 }
 
 /// `kiln describe input` and `kiln template input` mean the whole file.
@@ -111,14 +138,18 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   });
 
   CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
-  compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required();
-  compare_app->add_option("B", right, "the same kind; A's errors are relative to it")->required();
+  compare_app->add_option("A", left, "run folder, .h5, .csv or .json")
+      ->required()
+      ->check(CLI::ExistingPath);
+  compare_app->add_option("B", right, "the same kind; A's errors are relative to it")
+      ->required()
+      ->check(CLI::ExistingPath);
   compare_app->add_option("--tolerance", tolerance, "largest relative difference")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative);
   compare_app->add_option("--floor", floor, "values below it count as this large")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative);
   compare_app->callback([&] {
     command = [&]() -> int {
       int same = 0;
@@ -144,9 +175,15 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // The library prints help and version to the first stream, mistakes to the second.
-    if (communicator->getRank() == 0) app.exit(error);
-    return error.get_exit_code() == 0 ? exit_success : exit_bad_input;
+    const bool is_mistake = error.get_exit_code() != 0;
+    if (communicator->getRank() == 0) {
+      if (is_mistake) {
+        std::fprintf(stderr, "%s\nRun with --help for more information.\n", message_of(app, error).c_str());
+      } else {
+        app.exit(error);
+      }
+    }
+    return is_mistake ? exit_bad_input : exit_success;
   }
 
   try {

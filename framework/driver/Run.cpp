@@ -254,7 +254,7 @@ void train(const CommandOptions& options, const Comm& communicator) {
                            {"status", "complete"}};
   report.section("provenance") = provenance(*communicator);
   located(input, [&] {
-    auto trainer = Registry<Trainer>::create(list.sublist("reduction"), {list, communicator});
+    auto trainer = Registry<Trainer>::create(list.sublist("reduction"), {list, communicator, options.quiet});
     trainer->train(reduction_file(list), report);
     return 0;
   });

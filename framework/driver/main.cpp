@@ -20,6 +20,11 @@ void use_one_blas_thread() {
 
 int main(int argc, char** argv) {
   use_one_blas_thread();
-  Tpetra::ScopeGuard scope(&argc, &argv);
+  // The command line is Kiln's alone: Kokkos would answer --help with its own page and take unprefixed flags of its own.
+  // Its settings come from KOKKOS_… environment variables.
+  int library_argc = 1;
+  char* library_arguments[] = {argv[0], nullptr};
+  char** library_argv = library_arguments;
+  Tpetra::ScopeGuard scope(&library_argc, &library_argv);
   return kiln::command_line(argc, argv, Tpetra::getDefaultComm());
 }

@@ -15,6 +15,7 @@ class Trainer {
   struct Context {
     const Teuchos::ParameterList& input;  ///< the whole checked input
     Teuchos::RCP<const Communicator> communicator;
+    bool quiet = false;  ///< no progress bar
   };
   static constexpr const char* category = "trainer";
 

@@ -65,10 +65,12 @@ std::vector<Extremes::Extreme> Extremes::local_extremes(const Moment& moment) {
   return extremes;
 }
 
+void Extremes::open() {
+  log_ = std::make_unique<CsvLog>(context_.folder / file_name, columns(), context_.first_step, context_.communicator);
+}
+
 void Extremes::observe(const Moment& moment) {
-  if (log_ == nullptr) {
-    log_ = std::make_unique<CsvLog>(context_.folder / file_name, columns(), context_.first_step, context_.communicator);
-  }
+  if (log_ == nullptr) open();
   if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
   const std::vector<Extreme> mine = local_extremes(moment);
   const int ranks = context_.communicator->getSize();
@@ -92,9 +94,11 @@ void Extremes::observe(const Moment& moment) {
 }
 
 void Extremes::finish(RunReport& report) {
-  if (log_ != nullptr) log_->check();
+  // A run that restarts from its last step observes nothing more.
+  if (log_ == nullptr) open();
+  log_->check();
   nlohmann::json section;
-  if (context_.communicator->getRank() == 0 && log_ != nullptr) {
+  if (context_.communicator->getRank() == 0) {
     const CsvTable table = read_csv(context_.folder / file_name);
     for (std::size_t component = 0; component < fields_.size(); ++component) {
       nlohmann::json& entry = section[fields_[component].name];

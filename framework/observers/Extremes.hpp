@@ -29,6 +29,7 @@ class Extremes : public Observer {
     double value;
     double particle;  ///< global id; exact as a double
   };
+  void open();
   std::vector<std::string> columns() const;
   /// Largest and smallest of each component on this rank, in turn.
   std::vector<Extreme> local_extremes(const Moment& moment);

@@ -61,6 +61,8 @@ void FieldObserver::observe(const Moment& moment) {
 }
 
 void FieldObserver::finish(RunReport& report) {
+  // A run that restarts from its last step observes nothing more.
+  if (file_ == nullptr) open();
   report.section("fields") = {{"file", "run.h5"},
                               {"frames", file_->frames_written()},
                               {"particles", context_.method.particles()->getGlobalNumElements()}};

@@ -181,7 +181,8 @@ nlohmann::json ProbeObserver::summary() const {
 }
 
 void ProbeObserver::finish(RunReport& report) {
-  if (log_ == nullptr) return;
+  // A run that restarts from its last step observes nothing more.
+  if (log_ == nullptr) open();
   log_->check();
   std::string text;
   on_root(*communicator_, file_.string(), [&]() -> std::optional<Fault> {

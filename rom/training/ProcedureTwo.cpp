@@ -108,6 +108,7 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
     : input_(context.input),
       block_(block),
       communicator_(context.communicator),
+      quiet_(context.quiet),
       span_(TimeSpan::of(context.input)),
       newton_(context.input.sublist("time").sublist("newton")),
       basis_settings_(block.sublist("basis")),
@@ -128,7 +129,7 @@ LoopTotals ProcedureTwo::march(Method& method, std::vector<Observer*> observers,
       Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{method, span_.step});
   scheme->start(x, 0.0);
   ProgressObserver progress(label, 0, *communicator_);
-  observers.push_back(&progress);
+  if (!quiet_) observers.push_back(&progress);
   return run_time_loop(method, *scheme, x, span_, observers);
 }
 

@@ -37,6 +37,7 @@ class ProcedureTwo : public Trainer {
   const Teuchos::ParameterList& input_;
   const Teuchos::ParameterList& block_;
   Teuchos::RCP<const Communicator> communicator_;
+  bool quiet_;
   TimeSpan span_;
   NewtonSettings newton_;
   PodSettings basis_settings_, residual_settings_;
