@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace kiln {
@@ -15,9 +17,15 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
+bool draws_bars() {
+  // Under mpirun a rank's standard error is a pipe, whatever stands at its other end; KILN_PROGRESS tells.
+  if (const char* wish = std::getenv("KILN_PROGRESS"); wish != nullptr) return std::string_view(wish) == "bar";
+  return isatty(STDERR_FILENO) == 1;
+}
+
 ProgressObserver::ProgressObserver(std::string label, int first_step, const Communicator& communicator)
     : ProgressObserver(std::move(label), first_step, communicator.getRank() == 0 ? stderr : nullptr,
-                       isatty(STDERR_FILENO) == 1) {}
+                       draws_bars()) {}
 
 ProgressObserver::ProgressObserver(std::string label, int first_step, std::FILE* stream, bool terminal)
     : label_(std::move(label)),

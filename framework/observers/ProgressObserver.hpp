@@ -9,8 +9,8 @@
 
 namespace kiln {
 
-/// Shows on rank 0's standard error how far a run is: a bar with the time left if that is a terminal, redrawn at most
-/// once a second, else a line every 10 %. The driver creates it; it is no block of the input.
+/// Shows on rank 0's standard error how far a run is: a bar with the time left if that is a terminal (or the environment
+/// says KILN_PROGRESS=bar, which reaches through mpirun's pipes), redrawn at most once a second, else a line every 10 %. The driver creates it; it is no block of the input.
 class ProgressObserver : public Observer {
  public:
   /// `label` stands in front of the bar, e.g. "full order". `first_step` counts as done already when time left is
@@ -37,6 +37,9 @@ class ProgressObserver : public Observer {
   int tenths_ = 0;
   bool open_line_ = false;
 };
+
+/// Whether progress is shown as a bar that redraws itself, not as lines.
+bool draws_bars();
 
 /// "1:02:03", "2:05" or "12 s".
 std::string duration_text(double seconds);

@@ -40,7 +40,8 @@ def reconstruct(reduction_file, coordinates):
 
 
 def probe_errors(full, reduced):
-    """For each probe column: errors of `reduced` in % of the full-order kelvin (Eq. 35) and of its largest rise."""
+    """For each probe column: errors of `reduced` in % of the full-order kelvin (Eq. 35) and of max(T − T0)
+    over all probes and steps."""
     full_probes, reduced_probes = full.probes(), reduced.probes()
     merged = full_probes.merge(reduced_probes, on="step", suffixes=("", " reduced"))
     if len(merged) != len(full_probes) or len(merged) != len(reduced_probes):

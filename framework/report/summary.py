@@ -111,7 +111,7 @@ def table(summary):
     row("their sources n_s", "", gnat["sources"])
     row("particles touched, %", "", f"{gnat['touched_percent']:.2f}")
     row("smallest singular value of PΦ_r", "", f"{gnat['sigma_min']:.3g}")
-    lines += ["", "  worst error over all steps                   % of kelvin    % of max(T - T0)"]
+    lines += ["", "  worst error over all steps                    % of kelvin   % of largest rise of any probe"]
     for name, error in summary["probes"].items():
         lines.append(
             f"  {name:<44}{error['worst_error_percent']:>12.4f}{error['worst_error_percent_of_rise']:>20.4f}"

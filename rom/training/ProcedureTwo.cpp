@@ -116,6 +116,8 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
 
 void ProcedureTwo::stage(const std::string& name, RunReport& report, const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
+  const auto number = report.section("training")["stages"].size() + 1;
+  if (!quiet_ && communicator_->getRank() == 0) fmt::print(stderr, "training {}/5: {}\n", number, name);
   work();
   communicator_->barrier();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -138,7 +140,7 @@ Snapshots ProcedureTwo::run_full_order(RunReport& report) {
   model_ = method.model();
   Snapshots snapshots(method.row_size());
   SnapshotObserver observer(method, snapshots, block_.sublist("snapshots").get<int>("every"));
-  const LoopTotals totals = march(method, {&observer}, "training 1/5: full order");
+  const LoopTotals totals = march(method, {&observer}, "full order");
   observer.finish(report);
   report.section("training")["full_order"] = {{"steps", totals.steps}, {"residuals", totals.residuals}};
   return snapshots;
@@ -153,7 +155,7 @@ Snapshots ProcedureTwo::run_lspg(const Pod& basis, RunReport& report) {
       newton_);
   Snapshots residuals(method.row_size());
   method.observe_residuals([&residuals](ConstVectorView residual) { residuals.append(residual); });
-  const LoopTotals totals = march(method, {}, "training 3/5: LSPG");
+  const LoopTotals totals = march(method, {}, "LSPG");
   report.section("training")["lspg"] = {{"steps", totals.steps},
                                         {"residuals", totals.residuals},
                                         {"capped_steps", totals.capped_steps},
@@ -191,10 +193,12 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
     facts["sigma_min"] = gappy.smallest_singular_value;
     facts["gappy_condition"] = gappy.condition;
     if (gappy.smallest_singular_value < small_sigma) {
-      facts["warnings"].push_back(fmt::format(
+      const std::string warning = fmt::format(
           "the smallest singular value of PΦ_r is {:.2e}: the hyper-reduced residual may amplify what the residual "
           "basis misses by {:.0f}; take more samples or fewer residual modes",
-          gappy.smallest_singular_value, 1.0 / gappy.smallest_singular_value));
+          gappy.smallest_singular_value, 1.0 / gappy.smallest_singular_value);
+      facts["warnings"].push_back(warning);
+      if (communicator_->getRank() == 0) fmt::print(stderr, "warning: {}\n", warning);
     }
     const std::unique_ptr<Model> sample = sampled_or_masked(model_, sampled);
     const std::vector<GlobalIndex> queries = nearest_particles(*model_, queried_positions(input_));
