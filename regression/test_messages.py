@@ -1,0 +1,209 @@
+"""What the command line says of mistakes: status 2, once on standard error, on any number of ranks, nothing touched."""
+
+import fcntl
+import re
+
+from harness import SMALL, KilnTest, digests, main
+
+STACK_TRACE = re.compile(r"terminate|what\(\)|Aborted|[Bb]acktrace|Segmentation|unforeseen|did not foresee")
+
+
+class MessagesTest(KilnTest):
+    def prepare(self):
+        # Results of an earlier run, which no mistake may change.
+        self.solve("run")
+
+    def wrong(self, *arguments, lines, words, ranks=(1,)):
+        """Runs a command line; `lines` is how long the message is, and each word stands in it."""
+        before = digests(self.folder)
+        for count in ranks:
+            outcome = self.kiln(*arguments, ranks=count)
+            with self.subTest(ranks=count, message=outcome.stderr):
+                self.assertEqual(outcome.status, 2)
+                self.assertEqual(outcome.stdout, "")
+                self.assertEqual(outcome.stderr.count("\n"), lines)
+                for word in words:
+                    self.assertIn(word, outcome.stderr)
+                self.assertNotRegex(outcome.stderr, STACK_TRACE)
+                self.assertEqual(digests(self.folder), before)
+        return outcome.stderr
+
+    def edited(self, *edits):
+        """The small case with some of its text replaced."""
+        text = SMALL.read_text()
+        for old, new in edits:
+            self.assertEqual(text.count(old), 1, old)
+            text = text.replace(old, new)
+        (self.folder / "case.yaml").write_text(text)
+        return text
+
+    def place(self, text, word):
+        """line:column of a word's first letter, as editors count."""
+        before = text[: text.index(word)]
+        return f"case.yaml:{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}: "
+
+    # Command line
+
+    def test_no_command(self):
+        self.wrong(lines=2, words=("A subcommand is required", "--help"), ranks=(1, 2))
+
+    def test_unknown_command(self):
+        self.wrong("frobnicate", lines=2, words=("no command 'frobnicate'", "run, train, check", "--help"))
+
+    def test_misspelt_command(self):
+        self.wrong("tran", SMALL, lines=2, words=("no command 'tran'", "did you mean 'train'?"))
+
+    def test_unknown_option(self):
+        self.wrong("run", SMALL, "--frob", lines=2, words=("--frob", "--help"))
+
+    def test_missing_file_name(self):
+        for command in ("run", "train", "check"):
+            self.wrong(command, lines=2, words=("FILE is required",))
+
+    def test_missing_name(self):
+        self.wrong("describe", lines=2, words=("NAME is required",))
+
+    def test_set_without_value(self):
+        self.wrong("run", SMALL, "--set", "time.step", lines=1, words=("--set time.step", "no '='", "path.to.key=value"))
+
+    def test_set_unknown_key(self):
+        self.wrong("run", SMALL, "--set", "time.stp=1 us", lines=1, words=("--set time.stp", "did you mean 'step'?"))
+
+    def test_unknown_component(self):
+        self.wrong("describe", "wendlad c2", lines=1, words=("'wendlad c2'", "did you mean 'wendland c2'?"))
+        self.wrong("template", "sphheat", lines=1, words=("'sphheat'", "did you mean 'sph heat'?"))
+
+    def test_report_of_a_folder_without_one(self):
+        self.wrong("report", ".", lines=1, words=("report.json", "No such file"))
+        self.wrong("report", "nowhere", lines=1, words=("nowhere/report.json", "No such file"), ranks=(2,))
+
+    def test_compare_with_a_missing_file(self):
+        self.wrong("compare", "results/fom", "nowhere", lines=2, words=("nowhere", "does not exist"), ranks=(1, 2))
+        self.wrong("compare", "nowhere.h5", "results/fom/run.h5", lines=2, words=("nowhere.h5", "does not exist"))
+
+    def test_compare_with_a_bad_tolerance(self):
+        for value in ("-1", "nan", "inf", "1e-6x"):
+            words = (f"'{value}'", "finite number of at least 0")
+            self.wrong("compare", "results", "results", f"--tolerance={value}", lines=2, words=("--tolerance",) + words)
+
+    # Input files
+
+    def test_file_that_is_not_there(self):
+        self.wrong("run", "nowhere.yaml", lines=1, words=("nowhere.yaml", "no such file"), ranks=(1, 2, 3))
+
+    def test_file_that_is_a_folder(self):
+        self.wrong("run", "results", lines=1, words=("results", "folder"))
+
+    def test_empty_file(self):
+        (self.folder / "case.yaml").write_text("")
+        self.wrong("run", "case.yaml", lines=1, words=("case.yaml", "empty"))
+
+    def test_broken_yaml(self):
+        text = self.edited(("count: [24, 12, 6]", "count: [24, 12, 6"))
+        message = self.wrong("run", "case.yaml", lines=1, words=())
+        self.assertRegex(message, r"^case\.yaml:\d+:\d+: ")
+        line = int(message.split(":")[1])
+        self.assertLessEqual(abs(line - text[: text.index("[24, 12, 6")].count("\n") - 1), 2)
+
+    def test_misspelt_key(self):
+        text = self.edited(("kernel: cubic", "kernl: cubic"))
+        words = (self.place(text, "kernl"), "model.kernl: ", "did you mean 'kernel'?")
+        # The key that is missing now is named as well.
+        self.assertIn("kernl", self.wrong("run", "case.yaml", lines=1, words=words))
+
+    def test_two_mistakes_in_the_order_of_the_file(self):
+        text = self.edited(("power: 20 W", "power: twenty"), ("refresh: 10", "refresh: 2.5"))
+        message = self.wrong("check", "case.yaml", lines=2, words=(), ranks=(1, 2))
+        first, second = message.splitlines()
+        self.assertTrue(first.startswith(self.place(text, "twenty") + "model.heat_source.power: "), first)
+        self.assertTrue(second.startswith(self.place(text, "2.5") + "time.newton.refresh: "), second)
+
+    def test_not_a_number(self):
+        text = self.edited(("width: 0.15 mm", "width: .nan"))
+        self.wrong("run", "case.yaml", lines=1, words=(self.place(text, ".nan") + "model.heat_source.width", "not finite"))
+
+    def test_negative_step(self):
+        text = self.edited(("step: 50 us", "step: -50 us"))
+        self.wrong("run", "case.yaml", lines=1, words=(self.place(text, "-50 us") + "time.step", "not above 0"))
+
+    def test_wrong_unit(self):
+        text = self.edited(("power: 20 W", "power: 20 kg"))
+        self.wrong("run", "case.yaml", lines=1, words=(self.place(text, "20 kg") + "model.heat_source.power", "kg", "W"))
+
+    def test_wrong_length_of_a_list(self):
+        text = self.edited(("count: [24, 12, 6]", "count: [24, 12]"))
+        self.wrong("run", "case.yaml", lines=1, words=(self.place(text, "[24, 12]") + "model.particles.count", "3"))
+
+    def test_end_between_two_steps(self):
+        text = self.edited(("end: 2 ms", "end: 2.01 ms"))
+        words = (self.place(text, "2.01 ms") + "time.end", "40.2 steps", "whole number of steps")
+        self.wrong("run", "case.yaml", lines=1, words=words)
+        self.wrong("train", "case.yaml", lines=1, words=words)
+
+    def test_missing_block(self):
+        text = SMALL.read_text()
+        (self.folder / "case.yaml").write_text(text[: text.index("time:\n")] + text[text.index("method:") :])
+        self.wrong("run", "case.yaml", lines=1, words=("case.yaml", "time", "missing"))
+
+    def test_training_without_a_reduction_block(self):
+        text = SMALL.read_text()
+        (self.folder / "case.yaml").write_text(text[: text.index("reduction:\n")] + text[text.index("output:") :])
+        self.wrong("train", "case.yaml", lines=1, words=("case.yaml", "no block 'reduction'"))
+
+    def test_probes_outside_the_part(self):
+        text = self.edited(
+            ("[0.6 mm, -0.1 mm, 0.5 mm]", "[0.6 mm, -5 mm, 0.5 mm]"), ("[0.8 mm, 0 mm, 0.1 mm]", "[0.8, 0, 0.1]")
+        )
+        message = self.wrong("run", "case.yaml", lines=2, words=("'path'", "'deep'", "outside"), ranks=(1, 2))
+        self.assertNotIn("'side'", message)
+        first, second = message.splitlines()
+        self.assertTrue(first.startswith(self.place(text, "[0.6 mm, -5 mm")), first)
+        self.assertTrue(second.startswith(self.place(text, "[0.8, 0, 0.1]")), second)
+
+    def test_unknown_method(self):
+        words = ("method.type", "'gant'", "fom, galerkin, gnat, lspg", "did you mean 'gnat'?")
+        self.wrong("run", SMALL, "--set", "method.type=gant", lines=1, words=words)
+
+    # Data and output files
+
+    def test_no_reduction_file(self):
+        for method in ("galerkin", "lspg", "gnat"):
+            words = ("results/reduction.h5", "no such file", "kiln train")
+            self.wrong("run", SMALL, "--set", f"method.type={method}", lines=1, words=words, ranks=(1, 2))
+
+    def test_reduction_file_that_is_something_else(self):
+        (self.folder / "results" / "reduction.h5").write_bytes((self.folder / "results/fom/run.h5").read_bytes())
+        self.wrong("run", SMALL, "--set", "method.type=gnat", lines=1, words=("results/reduction.h5",))
+        (self.folder / "results" / "reduction.h5").write_text("no HDF5 at all\n")
+        self.wrong("run", SMALL, "--set", "method.type=gnat", lines=1, words=("results/reduction.h5",))
+
+    def test_particle_file_that_is_not_there(self):
+        particles = "model.particles={type: file, path: nowhere.csv, spacing: 0.1 mm}"
+        self.wrong("run", SMALL, "--set", particles, lines=1, words=("nowhere.csv",))
+
+    def test_output_folder_that_is_a_file(self):
+        (self.folder / "taken").write_text("a file\n")
+        self.wrong("run", SMALL, "--set", "output.directory=taken", lines=1, words=("taken/fom", "cannot be made"), ranks=(2,))
+        self.wrong("train", SMALL, "--set", "output.directory=taken", lines=1, words=("taken", "cannot be made"))
+        (self.folder / "half").mkdir()
+        (self.folder / "half" / "fom").write_text("a file\n")
+        self.wrong("run", SMALL, "--set", "output.directory=half", lines=1, words=("half/fom", "not a folder"))
+
+    def test_folder_in_the_place_of_an_output_file(self):
+        # Found at the first step, after the folder was taken: other files may be new, the folder stands.
+        folder = self.folder / "results" / "fom"
+        (folder / "probes.csv").unlink()
+        (folder / "probes.csv").mkdir()
+        outcome = self.kiln("run", SMALL, "--quiet", ranks=2)
+        self.assertEqual((outcome.status, outcome.stdout), (2, ""), outcome.stderr)
+        self.assertEqual(outcome.stderr.count("\n"), 1, outcome.stderr)
+        self.assertIn("probes.csv", outcome.stderr)
+
+    def test_folder_in_use(self):
+        with open(self.folder / "results" / "fom" / "run.lock", "w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            self.wrong("run", SMALL, lines=1, words=("results/fom", "in use by another run"), ranks=(1, 2))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,103 @@
+"""From the full-order run to the reduced ones by one line of the input, and what a reduction file may be used for."""
+
+import json
+
+import numpy as np
+import pandas
+
+from harness import SMALL, KilnTest, datasets, main
+
+# Largest error of a probe's temperature against the full-order run, relative to the largest rise of any probe. The
+# basis of 12 vectors was learnt from the same run, so its truncation (last singular value kept / largest: 2e-5) and
+# Newton's tolerance (1e-6) bound what is left.
+PROBE_BOUND = 1e-3
+# Another power than the training's: outside the span of the snapshots, as materials depend on temperature.
+OTHER_POWER_BOUND = 3e-2
+
+
+class ReductionTest(KilnTest):
+    def prepare(self):
+        self.solve("run")
+        self.solve("train")
+
+    def probes(self, method, into="results"):
+        return pandas.read_csv(self.folder / into / method / "probes.csv").filter(like="temperature").to_numpy()
+
+    def test_methods_follow_the_full_order_run(self):
+        full = self.probes("fom")
+        self.assertGreater(full.max() - full.min(), 100.0, "the case heats its probes")
+        for method in ("galerkin", "lspg", "gnat"):
+            with self.subTest(method):
+                self.solve("run", f"method.type={method}")
+                reduced = self.probes(method)
+                self.assertEqual(reduced.shape, full.shape)
+                rise = np.abs(full - full[0]).max()
+                self.assertLess(np.abs(reduced - full).max() / rise, PROBE_BOUND)
+                self.assertGreater(np.abs(reduced - full).max(), 0.0, "another method was run than the full-order one")
+
+    def test_reports(self):
+        for method in ("galerkin", "lspg", "gnat"):
+            self.solve("run", f"method.type={method}")
+            with self.subTest(method):
+                report = json.loads((self.folder / "results" / method / "report.json").read_text())
+                self.assertEqual(report["run"]["method"], method)
+                self.assertEqual(report["run"]["status"], "complete")
+                self.assertEqual(report["run"]["steps"], 40)
+                for key in ("residuals", "residuals_per_step", "iterations", "capped_steps"):
+                    self.assertIn(key, report["solve"])
+                for key in ("loop_wall_s", "loop_cpu_s", "total_wall_s", "setup_wall_s", "peak_memory_bytes"):
+                    self.assertGreater(report["time"][key], 0.0)
+                self.assertEqual(report["method"]["basis_rank"], 12)
+        self.assertEqual(report["method"]["residual_rank"], 24)
+        self.assertEqual(report["method"]["sampled"], 60)
+        self.assertLess(report["method"]["sources"], report["method"]["full_order_particles"])
+        training = json.loads((self.folder / "results" / "training" / "report.json").read_text())["training"]
+        self.assertEqual([stage["name"] for stage in training["stages"]][0], "full-order run")
+        self.assertGreater(training["sigma_min"], 0.0)
+
+    def test_gnat_is_the_same_on_any_number_of_ranks(self):
+        self.solve("run", "method.type=gnat")
+        alone = datasets(self.folder / "results" / "gnat" / "run.h5")
+        reduction = (self.folder / "results" / "reduction.h5").read_bytes()
+        for ranks in (2, 3):
+            with self.subTest(ranks=ranks):
+                into = f"ranks-{ranks}"
+                (self.folder / into).mkdir()
+                (self.folder / into / "reduction.h5").write_bytes(reduction)
+                self.solve("run", "method.type=gnat", into=into, ranks=ranks)
+                for name in ("run.h5", "probes.csv", "extremes.csv"):
+                    # A reduced coordinate that passes through 0 counts as 1 K: the state is a sum of all of them.
+                    compared = self.kiln("compare", f"results/gnat/{name}", f"{into}/gnat/{name}", "--floor", "1")
+                    self.assertEqual(compared.status, 0, compared.stdout)
+                other = datasets(self.folder / into / "gnat" / "run.h5")
+                np.testing.assert_array_equal(other["particle"], alone["particle"])
+                np.testing.assert_allclose(other["temperature"], alone["temperature"], rtol=1e-10, atol=0.0)
+
+    def test_another_power_is_accepted(self):
+        power = "model.heat_source.power=22 W"
+        trained = self.probes("fom")
+        self.solve("run", power)
+        self.solve("run", power, "method.type=gnat")
+        full, reduced = self.probes("fom"), self.probes("gnat")
+        rise = np.abs(full - full[0]).max()
+        self.assertLess(np.abs(reduced - full).max() / rise, OTHER_POWER_BOUND)
+        self.assertGreater(np.abs(trained - full).max() / rise, 2.0 * OTHER_POWER_BOUND, "the bound tells powers apart")
+
+    def test_another_model_is_refused_by_name(self):
+        for override, words in (
+            ("model.kernel=wendland c2", ("model.kernel", "cubic spline", "wendland c2")),
+            ("model.smoothing_length=1.4", ("model.smoothing_length", "1.5", "1.4")),
+            ("time.step=25 us", ("time.step", "5e-05", "2.5e-05")),
+        ):
+            with self.subTest(override):
+                refused = self.kiln("run", SMALL, "--set", "method.type=gnat", "--set", override, ranks=2)
+                self.assertEqual(refused.status, 2)
+                self.assertEqual(refused.stdout, "")
+                self.assertEqual(refused.stderr.count("results/reduction.h5"), 1, refused.stderr)
+                for word in words:
+                    self.assertIn(word, refused.stderr)
+                self.assertFalse((self.folder / "results" / "gnat" / "run.h5").exists())
+
+
+if __name__ == "__main__":
+    main()
