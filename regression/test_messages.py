@@ -1,4 +1,7 @@
-"""What the command line says of mistakes: status 2, once on standard error, on any number of ranks, nothing touched."""
+"""What the command line says of mistakes: status 2, once on standard error, on any number of ranks, nothing touched.
+
+Each kind of mistake (command line, input, data file, output folder) runs on more than one rank once; mpirun takes more
+than a second to end a failed run, so not all of them do."""
 
 import fcntl
 import re
@@ -89,7 +92,7 @@ class MessagesTest(KilnTest):
     # Input files
 
     def test_file_that_is_not_there(self):
-        self.wrong("run", "nowhere.yaml", lines=1, words=("nowhere.yaml", "no such file"), ranks=(1, 2, 3))
+        self.wrong("run", "nowhere.yaml", lines=1, words=("nowhere.yaml", "no such file"), ranks=(1, 3))
 
     def test_file_that_is_a_folder(self):
         self.wrong("run", "results", lines=1, words=("results", "folder"))
@@ -167,9 +170,9 @@ class MessagesTest(KilnTest):
     # Data and output files
 
     def test_no_reduction_file(self):
-        for method in ("galerkin", "lspg", "gnat"):
+        for method, ranks in (("galerkin", 1), ("lspg", 1), ("gnat", 2)):
             words = ("results/reduction.h5", "no such file", "kiln train")
-            self.wrong("run", SMALL, "--set", f"method.type={method}", lines=1, words=words, ranks=(1, 2))
+            self.wrong("run", SMALL, "--set", f"method.type={method}", lines=1, words=words, ranks=(ranks,))
 
     def test_reduction_file_that_is_something_else(self):
         (self.folder / "results" / "reduction.h5").write_bytes((self.folder / "results/fom/run.h5").read_bytes())

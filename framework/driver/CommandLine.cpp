@@ -138,9 +138,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   });
 
   CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
-  compare_app->add_option("A", left, "run folder, .h5, .csv or .json")
-      ->required()
-      ->check(CLI::ExistingPath);
+  compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required()->check(CLI::ExistingPath);
   compare_app->add_option("B", right, "the same kind; A's errors are relative to it")
       ->required()
       ->check(CLI::ExistingPath);

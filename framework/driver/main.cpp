@@ -20,8 +20,8 @@ void use_one_blas_thread() {
 
 int main(int argc, char** argv) {
   use_one_blas_thread();
-  // The command line is Kiln's alone: Kokkos would answer --help with its own page and take unprefixed flags of its own.
-  // Its settings come from KOKKOS_… environment variables.
+  // The command line is Kiln's alone: Kokkos would answer --help with its own page and take unprefixed flags of its
+  // own. Its settings come from KOKKOS_… environment variables.
   int library_argc = 1;
   char* library_arguments[] = {argv[0], nullptr};
   char** library_argv = library_arguments;
