@@ -24,8 +24,7 @@ bool draws_bars() {
 }
 
 ProgressObserver::ProgressObserver(std::string label, int first_step, const Communicator& communicator)
-    : ProgressObserver(std::move(label), first_step, communicator.getRank() == 0 ? stderr : nullptr,
-                       draws_bars()) {}
+    : ProgressObserver(std::move(label), first_step, communicator.getRank() == 0 ? stderr : nullptr, draws_bars()) {}
 
 ProgressObserver::ProgressObserver(std::string label, int first_step, std::FILE* stream, bool terminal)
     : label_(std::move(label)),

@@ -9,8 +9,9 @@
 
 namespace kiln {
 
-/// Shows on rank 0's standard error how far a run is: a bar with the time left if that is a terminal (or the environment
-/// says KILN_PROGRESS=bar, which reaches through mpirun's pipes), redrawn at most once a second, else a line every 10 %. The driver creates it; it is no block of the input.
+/// Shows on rank 0's standard error how far a run is: a bar with the time left if that is a terminal (or the
+/// environment says KILN_PROGRESS=bar, which reaches through mpirun's pipes), redrawn at most once a second, else a
+/// line every 10 %. The driver creates it; it is no block of the input.
 class ProgressObserver : public Observer {
  public:
   /// `label` stands in front of the bar, e.g. "full order". `first_step` counts as done already when time left is

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "framework/files/CsvTable.hpp"
-#include "framework/files/CsvTable.hpp"
 #include "framework/observers/Extremes.hpp"
 #include "framework/observers/FieldObserver.hpp"
 #include "framework/observers/NearestParticle.hpp"
