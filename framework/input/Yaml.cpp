@@ -41,13 +41,11 @@ YamlNode* YamlNode::find(const std::string& key) {
 }
 
 YamlNode& YamlNode::set(const std::string& key, const Location& key_location, YamlNode value) {
-  for (YamlPair& pair : pairs) {
-    if (pair.key != key) continue;
-    pair.location = key_location;
-    return pair.value = std::move(value);
-  }
-  pairs.push_back({key, key_location, std::move(value)});
-  return pairs.back().value;
+  const auto known = std::find_if(pairs.begin(), pairs.end(), [&](const YamlPair& pair) { return pair.key == key; });
+  if (known == pairs.end()) return pairs.emplace_back(YamlPair{key, key_location, std::move(value)}).value;
+  known->location = key_location;
+  known->value = std::move(value);
+  return known->value;
 }
 
 void YamlNode::erase(const std::string& key) {
