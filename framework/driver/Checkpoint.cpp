@@ -77,8 +77,9 @@ int Checkpoint::restore(const std::filesystem::path& folder, const std::string& 
                     "the same model, time and method blocks");
   }
   restore_unknown(checkpoint, "unknown", *method.coordinates(), x);
-  scheme.restore(checkpoint.group("scheme"));
+  // The scheme evaluates states and rates at the rows, which the method must have found again by then.
   method.restore(checkpoint.group("method"));
+  scheme.restore(checkpoint.group("scheme"));
   return static_cast<int>(checkpoint.integer("step"));
 }
 

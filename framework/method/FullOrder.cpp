@@ -225,6 +225,21 @@ ConstPositionView FullOrder::positions() const {
 
 void FullOrder::state(ConstVectorView x, VectorView u) const { Kokkos::deep_copy(u, x); }
 
+Method::Reader FullOrder::reader(const std::vector<LocalIndex>& places) const {
+  const auto components = static_cast<LocalIndex>(model_->fields().size());
+  const Kokkos::View<LocalIndex*, Device> chosen("kiln::method::places", places.size());
+  const auto host = Kokkos::create_mirror_view(chosen);
+  std::copy(places.begin(), places.end(), host.data());
+  Kokkos::deep_copy(chosen, host);
+  return [chosen, components](ConstVectorView x, VectorView u) {
+    Kokkos::parallel_for(
+        "kiln::method::read", RangePolicy(0, static_cast<LocalIndex>(chosen.extent(0))),
+        KOKKOS_LAMBDA(const LocalIndex i) {
+          for (LocalIndex c = 0; c < components; ++c) u(i * components + c) = x(chosen(i) * components + c);
+        });
+  };
+}
+
 void FullOrder::save(hdf5::Group& group) const {
   group.attribute("jacobian_age", static_cast<long long>(age_));
   if (age_ < 0) return;

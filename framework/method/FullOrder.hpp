@@ -33,6 +33,7 @@ class FullOrder : public Method {
   Teuchos::RCP<const Map> coordinates() const override { return halo_.rows(); }
   LocalIndex row_size() const override { return halo_.row_size(); }
   void initial(VectorView x) const override;
+  bool begin_step(double) override { return false; }
 
   void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) override;
   /// Throws DivergenceError for a rate that is not finite.
@@ -45,6 +46,7 @@ class FullOrder : public Method {
   ConstPositionView positions() const override;
   std::vector<Field> fields() const override { return model_->fields(); }
   void state(ConstVectorView x, VectorView u) const override;
+  Reader reader(const std::vector<LocalIndex>& places) const override;
   Parameters& parameters() override { return model_->parameters(); }
 
   void save(hdf5::Group& group) const override;

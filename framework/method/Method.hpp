@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -43,6 +44,11 @@ class Method {
   /// x at t = 0.
   virtual void initial(VectorView x) const = 0;
 
+  /// Prepares for a step that ends at `time`; steps come in the order of time. Returns whether the rows are others than
+  /// before, as where a new time window has a sample mesh of its own: row_size() may have changed, and states and rates
+  /// that were kept at the rows must be evaluated anew from their x. Collective.
+  virtual bool begin_step(double time) = 0;
+
   /// u and f(u, t) at this rank's rows for the unknown x.
   virtual void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) = 0;
   /// dx/dt, for explicit Runge–Kutta stages. Returns the number of evaluations of f.
@@ -61,6 +67,10 @@ class Method {
   virtual std::vector<Field> fields() const = 0;
   /// State of particles() for the unknown x. u: particles × components.
   virtual void state(ConstVectorView x, VectorView u) const = 0;
+  /// Tells some of particles(), given by their local places, as state() does but at the cost of these alone: the
+  /// function returned fills u, places × components, for the unknown x. It must not outlive the method.
+  using Reader = std::function<void(ConstVectorView x, VectorView u)>;
+  virtual Reader reader(const std::vector<LocalIndex>& places) const = 0;
 
   virtual Parameters& parameters() = 0;
 

@@ -20,6 +20,19 @@ void Parameters::add(std::string name, std::string unit, double* value) {
 void Parameters::add(std::string_view prefix, const Parameters& component) {
   for (const Parameter& parameter : component.parameters_) {
     add(fmt::format("{}.{}", prefix, parameter.name), parameter.unit, parameter.value);
+    parameters_.back().mirrors = parameter.mirrors;
+  }
+}
+
+void Parameters::mirror(const Parameters& other) {
+  if (other.parameters_.size() != parameters_.size()) {
+    throw std::logic_error(
+        fmt::format("a model of {} parameters cannot mirror one of {}", other.parameters_.size(), parameters_.size()));
+  }
+  for (Parameter& parameter : parameters_) {
+    const Parameter& twin = other.find(parameter.name);
+    parameter.mirrors.push_back(twin.value);
+    parameter.mirrors.insert(parameter.mirrors.end(), twin.mirrors.begin(), twin.mirrors.end());
   }
 }
 
@@ -44,6 +57,7 @@ void Parameters::set(std::string_view name, double value) {
                      fmt::format("a finite number in {}", parameter.unit));
   }
   *parameter.value = value;
+  for (double* mirror : parameter.mirrors) *mirror = value;
 }
 
 }  // namespace kiln

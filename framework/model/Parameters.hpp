@@ -8,9 +8,10 @@ namespace kiln {
 
 /// One live parameter µ of a model: the value the model reads at its next evaluation.
 struct Parameter {
-  std::string name;  ///< path below `model` in the input, e.g. "heat_source.power"
-  std::string unit;  ///< SI unit, "1" for a pure number
-  double* value;     ///< owned by the component that lists it
+  std::string name;                   ///< path below `model` in the input, e.g. "heat_source.power"
+  std::string unit;                   ///< SI unit, "1" for a pure number
+  double* value;                      ///< owned by the component that lists it
+  std::vector<double*> mirrors = {};  ///< take every new value too
 };
 
 /// The named, typed, live parameters of a model (µ of Eq. 12). A new value takes effect at the next evaluation;
@@ -21,6 +22,9 @@ class Parameters {
   void add(std::string name, std::string unit, double* value);
   /// Adds the parameters of a component, each name behind `prefix` and a dot.
   void add(std::string_view prefix, const Parameters& component);
+  /// Binds parameters of the same names, those of another model of the same physics: a value set here is set there too.
+  /// Throws std::logic_error unless both sets have the same names.
+  void mirror(const Parameters& other);
   /// Throws InputError that lists the known names for an unknown one.
   double get(std::string_view name) const;
   /// Throws InputError for an unknown name or a value that is not finite.

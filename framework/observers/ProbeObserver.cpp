@@ -15,21 +15,6 @@
 #include "framework/report/RunReport.hpp"
 
 namespace kiln {
-namespace {
-
-Kokkos::View<LocalIndex*, Device> entries_on(int rank, const std::vector<NearestParticle>& particles, int components) {
-  Kokkos::View<LocalIndex*, Device> entries("kiln::observers::entries", particles.size() * components);
-  const auto host = Kokkos::create_mirror_view(entries);
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    for (int c = 0; c < components; ++c) {
-      host(p * components + c) = particles[p].rank == rank ? particles[p].local * components + c : -1;
-    }
-  }
-  Kokkos::deep_copy(entries, host);
-  return entries;
-}
-
-}  // namespace
 
 Specification ProbeObserver::specification() {
   Specification point;
@@ -67,13 +52,17 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
       every_(list.get<int>("every")),
       probes_(find_probes(list, context)),
       fields_(method_.fields()),
-      u_("kiln::observers::state", method_.positions().extent(0) * fields_.size()),
-      picked_("kiln::observers::picked", probes_.size() * fields_.size()),
-      picked_host_(Kokkos::create_mirror_view(picked_)),
+      local_(probes_.size() * fields_.size()),
       values_(probes_.size() * fields_.size()) {
-  std::vector<NearestParticle> particles;
-  for (const Probe& probe : probes_) particles.push_back(probe.particle);
-  entries_ = entries_on(communicator_->getRank(), particles, static_cast<int>(fields_.size()));
+  std::vector<LocalIndex> places;
+  for (std::size_t p = 0; p < probes_.size(); ++p) {
+    if (probes_[p].particle.rank != communicator_->getRank()) continue;
+    mine_.push_back(p);
+    places.push_back(probes_[p].particle.local);
+  }
+  reader_ = method_.reader(places);
+  read_ = VectorView("kiln::observers::probes", places.size() * fields_.size());
+  read_host_ = Kokkos::create_mirror_view(read_);
 }
 
 void ProbeObserver::open() {
@@ -133,24 +122,22 @@ void ProbeObserver::write_places() const {
   write_atomically(context_.folder / "probes.json", places.dump(2) + "\n", communicator_);
 }
 
-void ProbeObserver::gather_values() {
-  const auto picked = picked_;
-  const auto entries = entries_;
-  const auto u = u_;
-  Kokkos::parallel_for(
-      "kiln::observers::pick", RangePolicy(0, static_cast<LocalIndex>(picked.extent(0))),
-      KOKKOS_LAMBDA(const LocalIndex i) { picked(i) = entries(i) < 0 ? 0.0 : u(entries(i)); });
-  Kokkos::deep_copy(picked_host_, picked_);
+void ProbeObserver::gather_values(ConstVectorView x) {
+  reader_(x, read_);
+  Kokkos::deep_copy(read_host_, read_);
+  const std::size_t components = fields_.size();
+  for (std::size_t i = 0; i < mine_.size(); ++i) {
+    for (std::size_t c = 0; c < components; ++c) local_[mine_[i] * components + c] = read_host_(i * components + c);
+  }
   // Each value is on one rank and 0 on the others.
-  Teuchos::reduce(picked_host_.data(), values_.data(), static_cast<int>(values_.size()), Teuchos::REDUCE_SUM, 0,
+  Teuchos::reduce(local_.data(), values_.data(), static_cast<int>(values_.size()), Teuchos::REDUCE_SUM, 0,
                   *communicator_);
 }
 
 void ProbeObserver::observe(const Moment& moment) {
   if (log_ == nullptr) open();
   if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
-  method_.state(moment.x, u_);
-  gather_values();
+  gather_values(moment.x);
   std::vector<double> row{moment.time};
   row.insert(row.end(), values_.begin(), values_.end());
   log_->add(moment.step, row);

@@ -36,7 +36,7 @@ class ProbeObserver : public Observer {
   void open();
   void write_places() const;
   std::vector<std::string> columns() const;
-  void gather_values();
+  void gather_values(ConstVectorView x);
   nlohmann::json summary() const;
 
   Context context_;
@@ -46,11 +46,12 @@ class ProbeObserver : public Observer {
   int every_;
   std::vector<Probe> probes_;
   std::vector<Field> fields_;
-  VectorView u_;
-  Kokkos::View<LocalIndex*, Device> entries_;  ///< of u_, one a value; −1: on another rank
-  VectorView picked_;
-  VectorView::HostMirror picked_host_;
-  std::vector<double> values_;   ///< probe by probe, component by component; on rank 0
+  std::vector<std::size_t> mine_;  ///< probes whose particle is on this rank
+  Method::Reader reader_;          ///< of these
+  VectorView read_;
+  VectorView::HostMirror read_host_;
+  std::vector<double> local_;    ///< probe by probe, component by component; 0 where another rank has the particle
+  std::vector<double> values_;   ///< likewise, complete on rank 0
   std::unique_ptr<CsvLog> log_;  ///< null before the first moment
 };
 

@@ -10,14 +10,13 @@ probes.png    temperature of the probes, full order and reduced, and their error
 import pathlib
 import sys
 
-import h5py
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from run_folder import RunFolder, probe_errors, reconstruct
+from run_folder import RunFolder, probe_errors, reconstruct, sample_mesh
 
 PICTURE_TIME = 3.2e-3  # s, the time of the report's Figs. 3 and 4
 
@@ -32,9 +31,7 @@ def draw_surface(folder, full, reduced):
     _, coordinates = reduced.coordinates()
     frame = int(np.argmin(np.abs(times - PICTURE_TIME)))
     approximate = reconstruct(folder / "reduction.h5", coordinates[frame : frame + 1])[0]
-    with h5py.File(folder / "reduction.h5") as reduction:
-        mesh = reduction["windows/0/sample_mesh"]
-        rows, sources = mesh["rows"][:], mesh["sources"][:]
+    rows, sources = sample_mesh(folder / "reduction.h5", times[frame])
 
     surface = np.flatnonzero(top_layer(positions))
     millimetres = 1e3 * positions

@@ -33,10 +33,26 @@ class RunFolder:
 
 
 def reconstruct(reduction_file, coordinates):
-    """State of every particle from reduced coordinates (u_ref + Φ û), frame by frame."""
+    """State of every particle from reduced coordinates, u_ref + Σ_w Φ_w û_w over the time windows, frame by frame."""
     with h5py.File(reduction_file) as reduction:
-        basis = reduction["windows/0/basis"]
-        return basis["reference"][:].reshape(1, -1) + coordinates @ basis["modes"][:].T
+        state = np.repeat(reduction["reference"][:].reshape(1, -1), len(coordinates), axis=0)
+        windows = reduction["windows"]
+        first = 0
+        for window in sorted(windows, key=int):
+            modes = windows[window]["basis/modes"][:]
+            state += coordinates[:, first : first + modes.shape[1]] @ modes.T
+            first += modes.shape[1]
+        return state
+
+
+def sample_mesh(reduction_file, time):
+    """Sampled particles and their sources in the time window that a step ending at `time` (s) lies in."""
+    with h5py.File(reduction_file) as reduction:
+        windows = reduction["windows"]
+        names = sorted(windows, key=int)
+        serving = next((w for w in names if time <= windows[w].attrs["end"] * (1 + 1e-9)), names[-1])
+        mesh = windows[serving]["sample_mesh"]
+        return mesh["rows"][:], mesh["sources"][:]
 
 
 def probe_errors(full, reduced):

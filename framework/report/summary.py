@@ -51,11 +51,13 @@ def summarise(folder):
     fom["ns_cpu_per_pair"] = 1e9 * fom["cpu_s"] / (residuals * pairs)
     method = reduced.report["method"]
     gnat.update(
+        time_windows=method["time_windows"],
         basis_rank=method["basis_rank"],
         residual_rank=method["residual_rank"],
         sampled=method["sampled"],
         sources=method["sources"],
         touched_percent=100 * method["sources"] / fom["particles"],
+        held_percent=100 * method["held"] / fom["particles"],
         sigma_min=method["sigma_min"],
     )
     errors = probe_errors(full, reduced)
@@ -105,11 +107,13 @@ def table(summary):
     row("CPU time a directed pair, ns", f"{fom['ns_cpu_per_pair']:.2f}")
     row("neighbours a particle", f"{fom['neighbours_per_particle']:.2f}")
     row("highest temperature, K", f"{fom['peak_kelvin']:.1f}", f"{gnat['peak_kelvin']:.1f}")
+    row("time windows", "", gnat["time_windows"])
     row("modes M", "", gnat["basis_rank"])
     row("residual modes n_r", "", gnat["residual_rank"])
     row("sampled particles n_p", "", gnat["sampled"])
     row("their sources n_s", "", gnat["sources"])
-    row("particles touched, %", "", f"{gnat['touched_percent']:.2f}")
+    row("particles touched in a window, %", "", f"{gnat['touched_percent']:.2f}")
+    row("particles held over all windows, %", "", f"{gnat['held_percent']:.2f}")
     row("smallest singular value of PΦ_r", "", f"{gnat['sigma_min']:.3g}")
     lines += ["", "  worst error over all steps                    % of kelvin   % of largest rise of any probe"]
     for name, error in summary["probes"].items():

@@ -92,12 +92,16 @@ LinearMultistep::LinearMultistep(MultistepCoefficients coefficients, const Conte
     runge_kutta_starter_ = std::make_unique<RungeKuttaStep>(rk4_tableau(), method_, step_);
   }
 
-  const LocalIndex rows = method_.row_size();
   const LocalIndex unknowns = local_size(*method_.coordinates());
-  const bool keep_rates = coefficients_.uses_earlier_rates() || starter_.uses_earlier_rates();
   levels_.resize(coefficients_.steps() + 1);
+  for (Level& level : levels_) level.x = VectorView("kiln::time::earlier unknown", unknowns);
+  allocate_rows();
+}
+
+void LinearMultistep::allocate_rows() {
+  const LocalIndex rows = method_.row_size();
+  const bool keep_rates = coefficients_.uses_earlier_rates() || starter_.uses_earlier_rates();
   for (Level& level : levels_) {
-    level.x = VectorView("kiln::time::earlier unknown", unknowns);
     level.u = VectorView("kiln::time::earlier state", rows);
     level.f = keep_rates || &level == &levels_[0] ? VectorView("kiln::time::earlier rate", rows) : levels_[0].f;
   }
@@ -115,6 +119,12 @@ void LinearMultistep::start(ConstVectorView x, double time) {
   known_ = 1;
 }
 
+void LinearMultistep::evaluate_anew() {
+  allocate_rows();
+  // Oldest first, as the run itself met them.
+  for (std::size_t j = known_; j-- > 0;) method_.evaluate(levels_[j].x, levels_[j].time, levels_[j].u, levels_[j].f);
+}
+
 void LinearMultistep::gather_history(const MultistepCoefficients& scheme) {
   Kokkos::deep_copy(history_, 0.0);
   for (std::size_t j = 1; j <= scheme.steps(); ++j) {
@@ -126,6 +136,7 @@ void LinearMultistep::gather_history(const MultistepCoefficients& scheme) {
 
 SolveReport LinearMultistep::advance(VectorView x, double time) {
   if (known_ == 0) throw std::logic_error("LinearMultistep::advance: neither started nor restored");
+  if (method_.begin_step(time)) evaluate_anew();
   const bool starting = known_ < coefficients_.steps();
   Level& next = levels_.back();
   SolveReport report;
@@ -161,6 +172,7 @@ void LinearMultistep::restore(const hdf5::Group& group) {
                     fmt::format("1 to {} of them for this time scheme", coefficients_.steps()));
   }
   known_ = times.size();
+  allocate_rows();
   const VectorView x("kiln::time::restored unknown", levels_[0].x.extent(0));
   // Oldest first, as the run itself met them.
   for (std::size_t j = known_; j-- > 0;) {

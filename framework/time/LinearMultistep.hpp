@@ -37,6 +37,10 @@ class LinearMultistep : public TimeScheme {
   };
 
   void keep(Level& level, ConstVectorView x, double time);
+  /// Arrays for the method's rows as they are now.
+  void allocate_rows();
+  /// States and rates of all levels, at rows that have changed.
+  void evaluate_anew();
   void gather_history(const MultistepCoefficients& scheme);
 
   MultistepCoefficients coefficients_;

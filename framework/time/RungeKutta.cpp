@@ -57,12 +57,13 @@ int RungeKuttaStep::advance(VectorView x, double time) {
 }
 
 RungeKutta::RungeKutta(ButcherTableau tableau, const Context& context)
-    : step_(std::move(tableau), context.method, context.step) {}
+    : method_(context.method), step_(std::move(tableau), context.method, context.step) {}
 
 void RungeKutta::start(ConstVectorView, double time) { time_ = time; }
 
 SolveReport RungeKutta::advance(VectorView x, double time) {
   SolveReport report;
+  method_.begin_step(time);
   report.residuals = step_.advance(x, time_);
   time_ = time;
   return report;

@@ -34,6 +34,7 @@ class RungeKutta : public TimeScheme {
   void restore(const hdf5::Group& group) override;
 
  private:
+  Method& method_;
   RungeKuttaStep step_;
   double time_ = 0.0;
 };

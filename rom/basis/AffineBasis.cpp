@@ -8,19 +8,53 @@
 #include "rom/linear_algebra/Dense.hpp"
 
 namespace kiln {
+namespace {
 
-AffineBasis::AffineBasis(VectorView reference, MatrixView modes) : reference_(reference), modes_(modes) {
-  if (reference.extent(0) != modes.extent(0)) {
-    throw std::logic_error(fmt::format("an affine basis of {} rows has a reference state of {} entries",
-                                       modes.extent(0), reference.extent(0)));
+ConstVectorView part(const ConstVectorView& values, int first, int count) {
+  return Kokkos::subview(values, std::make_pair(first, first + count));
+}
+
+}  // namespace
+
+AffineBasis::AffineBasis(ConstVectorView reference, ConstMatrixView modes, int first)
+    : reference_(reference), modes_(modes), first_(first) {
+  const int columns = static_cast<int>(modes.extent(1));
+  if (reference.extent(0) != modes.extent(0) || first < 0 || first > columns) {
+    throw std::logic_error(
+        fmt::format("an affine basis of {} rows and {} columns has a reference state of {} entries and begins at {}",
+                    modes.extent(0), columns, reference.extent(0), first));
   }
+  tangent_ = Kokkos::subview(modes_, Kokkos::ALL, std::make_pair(first, columns));
+  earlier_ = VectorView("kiln::rom::coordinates of earlier windows", first);
+  beginning_ = VectorView("kiln::rom::state at the window's beginning", reference.extent(0));
+  std::copy_n(reference_.data(), reference_.extent(0), beginning_.data());
 }
 
-void AffineBasis::state(ConstVectorView coordinates, VectorView u) const {
-  std::copy_n(reference_.data(), reference_.extent(0), u.data());
-  dense::multiply(1.0, modes_, coordinates, 1.0, u);
+void AffineBasis::begin_at(ConstVectorView earlier) const {
+  std::copy_n(earlier.data(), first_, earlier_.data());
+  std::copy_n(reference_.data(), reference_.extent(0), beginning_.data());
+  dense::multiply(1.0, dense::leading_columns(modes_, first_), earlier, 1.0, beginning_);
 }
 
-ConstMatrixView AffineBasis::tangent(ConstVectorView) const { return modes_; }
+void AffineBasis::state(ConstVectorView x, VectorView u) const {
+  const ConstVectorView earlier = part(x, 0, first_);
+  if (!std::equal(earlier.data(), earlier.data() + first_, earlier_.data())) begin_at(earlier);
+  std::copy_n(beginning_.data(), beginning_.extent(0), u.data());
+  dense::multiply(1.0, tangent_, part(x, first_, size()), 1.0, u);
+}
+
+std::unique_ptr<TrialSpace> AffineBasis::restricted(const std::vector<LocalIndex>& particles, int components) const {
+  const VectorView reference("kiln::rom::reference", particles.size() * components);
+  const MatrixView modes("kiln::rom::modes", particles.size() * components, modes_.extent(1));
+  for (std::size_t k = 0; k < modes.extent(1); ++k) {
+    for (std::size_t i = 0; i < reference.extent(0); ++i) {
+      modes(i, k) = modes_(particles[i / components] * components + i % components, k);
+    }
+  }
+  for (std::size_t i = 0; i < reference.extent(0); ++i) {
+    reference(i) = reference_(particles[i / components] * components + i % components);
+  }
+  return std::make_unique<AffineBasis>(reference, modes, first_);
+}
 
 }  // namespace kiln

@@ -4,20 +4,33 @@
 
 namespace kiln {
 
-/// The affine trial space u = u_ref + Φ û (Eq. 13).
+/// The affine trial space of time window w (Eq. 13):
+///
+///     u = u_ref + Σ_{v<w} Φ_v û_v + Φ_w û_w
+///
+/// The sum over earlier windows is the state in which they ended: with û_w = 0 the window begins exactly there,
+/// whatever the bases are. It is formed once and kept while the earlier coordinates stay as they are.
 class AffineBasis : public TrialSpace {
  public:
-  /// reference: u_ref of the particles; modes: their rows of Φ. Throws std::logic_error for sizes that differ.
-  AffineBasis(VectorView reference, MatrixView modes);
+  /// reference: u_ref of the particles; modes: their rows of [Φ_0 … Φ_w]; first: the column at which Φ_w begins. Throws
+  /// std::logic_error for sizes that do not fit.
+  AffineBasis(ConstVectorView reference, ConstMatrixView modes, int first = 0);
 
-  int size() const override { return static_cast<int>(modes_.extent(1)); }
-  void state(ConstVectorView coordinates, VectorView u) const override;
-  ConstMatrixView tangent(ConstVectorView coordinates) const override;
+  int first() const override { return first_; }
+  int size() const override { return static_cast<int>(tangent_.extent(1)); }
+  void state(ConstVectorView x, VectorView u) const override;
+  ConstMatrixView tangent(ConstVectorView) const override { return tangent_; }
   bool affine() const override { return true; }
+  std::unique_ptr<TrialSpace> restricted(const std::vector<LocalIndex>& particles, int components) const override;
 
  private:
+  void begin_at(ConstVectorView earlier) const;
+
   ConstVectorView reference_;
-  ConstMatrixView modes_;
+  ConstMatrixView modes_, tangent_;
+  int first_;
+  VectorView earlier_;  ///< the coordinates of earlier windows that beginning_ belongs to
+  VectorView beginning_;
 };
 
 }  // namespace kiln

@@ -67,22 +67,22 @@ ParticleTable ParticleTable::gather(const std::vector<GlobalIndex>& ids, const M
   return table;
 }
 
-void ParticleTable::write(hdf5::Group& group, const std::string& ids_name) const {
-  group.write(ids_name, std::vector<long long>(ids.begin(), ids.end()));
+void ParticleTable::write(hdf5::Group& group) const {
+  group.write("ids", std::vector<long long>(ids.begin(), ids.end()));
   group.write("positions", hdf5::Array<double>{{ids.size(), 3}, positions});
   group.attribute_of("positions", "unit", "m");
   group.write("reference", reference);
   group.write("modes", modes);
 }
 
-ParticleTable ParticleTable::read(const hdf5::Group& group, const std::string& ids_name, int components, int modes) {
+ParticleTable ParticleTable::read(const hdf5::Group& group, int components, int modes) {
   ParticleTable table;
-  const hdf5::Array<long long> ids = group.integers(ids_name, {0});
+  const hdf5::Array<long long> ids = group.integers("ids", {0});
   table.ids.assign(ids.values.begin(), ids.values.end());
   table.components = components;
   const std::size_t count = table.ids.size();
   if (std::adjacent_find(table.ids.begin(), table.ids.end(), std::greater_equal<GlobalIndex>()) != table.ids.end()) {
-    throw FileError(group.file(), group.path() + "/" + ids_name, "particle ids are not in ascending order");
+    throw FileError(group.file(), group.path() + "/ids", "particle ids are not in ascending order");
   }
   table.positions = group.reals("positions", {count, 3}).values;
   table.reference = group.reals("reference", {count, static_cast<std::size_t>(components)});

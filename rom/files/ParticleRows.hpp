@@ -24,9 +24,9 @@ struct ParticleTable {
   /// From distributed data: rows of `map`, each particle on one rank. `ids` ascending. Collective.
   static ParticleTable gather(const std::vector<GlobalIndex>& ids, const Map& map, ConstPositionView positions,
                               const MatrixView& reference, const MatrixView& modes, int components);
-  /// Datasets `ids_name`, positions, reference and modes of a group.
-  void write(hdf5::Group& group, const std::string& ids_name) const;
-  static ParticleTable read(const hdf5::Group& group, const std::string& ids_name, int components, int modes);
+  /// Datasets ids, positions, reference and modes of a group.
+  void write(hdf5::Group& group) const;
+  static ParticleTable read(const hdf5::Group& group, int components, int modes);
 
   /// Place of a particle in the table; −1 if it is not there.
   std::ptrdiff_t find(GlobalIndex id) const;

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
-#include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "framework/model/Model.hpp"
@@ -10,33 +11,41 @@
 
 namespace kiln {
 
+/// What training learns of one time window.
+struct WindowReduction {
+  double end;  ///< s; TimeWindow
+  Pod basis;
+  Pod residual_basis;  ///< its modes may have been dropped: only the gappy operator is written
+  GappyOperator gappy_operator;
+  std::vector<GlobalIndex> sampled;  ///< ids, ascending
+  std::unique_ptr<Model> sample;     ///< the model on the sampled particles alone
+};
+
 /// All that training learns, before it is written. Row-space arrays stand on the full model's rows.
 struct Reduction {
   const Teuchos::ParameterList& input;  ///< the whole checked input it was learnt with
   const Model& model;
   VectorView reference;  ///< u_ref at the rows
-  const Pod& basis;
-  const Pod& residual_basis;
-  const GappyOperator& gappy_operator;
-  const Model& sample;               ///< the model on the sampled particles alone
-  std::vector<GlobalIndex> sampled;  ///< ids, ascending
+  std::vector<WindowReduction> windows;
   std::vector<GlobalIndex> queries;  ///< ids, ascending
 };
 
-/// Writes a reduction file: whole, or not at all. It holds everything an online run needs:
+/// Writes a reduction file. It holds everything an online run needs:
 ///
 ///     attributes      format, format_version, model_type, model_input (checked, as YAML), model_hash, provenance,
-///                     components, particles
+///                     components, particles; trial (JSON), the errors of the training's trial run
 ///     /parameters     live parameters of the model at training, one attribute each
 ///     /time           step in s and scheme (as YAML) of the training
-///     /windows/0      one group a time window
-///       basis/          reference (N), modes (N × M), singular_values; attributes energy, rank
-///       sample_mesh/    rows, sources, and of the sources positions, reference, modes; gappy_operator (n_r × n_p),
-///                       residual_singular_values; attributes sigma_min, condition, residual_rank, residual_energy;
-///                       model/, written by the model itself
-///       queries/        particles, and of them positions, reference, modes
+///     /reference      u_ref (N)
+///     /windows/0 …    one group a time window; attribute end (s)
+///       basis/          modes (N × M), singular_values; attributes energy, rank
+///       sample_mesh/    rows, sources (ids); gappy_operator (n_r × n_p), residual_singular_values; attributes
+///                       sigma_min, condition, residual_rank, residual_energy; model/, written by the model itself
+///     /particles      the sources of all windows and the queried particles: ids, positions, reference, modes (of all
+///                     windows, one after the other), and the ids of the queries
 ///
-/// Row i of basis/ belongs to particle i. Throws FileError. Collective.
-void write_reduction(const std::filesystem::path& file, const Reduction& reduction);
+/// Row i of reference and basis/ belongs to particle i. Online, a hyper-reduced run reads nothing of size N. Throws
+/// FileError. Collective.
+void write_reduction(const std::string& file, const Reduction& reduction);
 
 }  // namespace kiln

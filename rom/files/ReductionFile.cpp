@@ -34,79 +34,117 @@ ReductionFile::ReductionFile(const Teuchos::ParameterList& input, const Teuchos:
     : file_(open(path(input), communicator)) {
   reduction_identity::require_format(file_);
   reduction_identity::require_model(file_, input.sublist("model"));
-  const std::vector<std::string> windows = file_.group("windows").names();
-  if (windows.size() != 1 || windows.front() != "0") {
-    throw FileError(file_.file(), "windows", fmt::format("holds {} time windows", windows.size()),
-                    "one window, named 0");
-  }
   components_ = static_cast<int>(file_.integer("components"));
   particles_ = file_.integer("particles");
-  basis_rank_ = static_cast<int>(window().group("basis").integer("rank"));
+  windows_ = read_windows();
 }
 
-hdf5::Group ReductionFile::window() const { return file_.group("windows").group("0"); }
+std::vector<TimeWindow> ReductionFile::read_windows() const {
+  const hdf5::Group group = file_.group("windows");
+  const std::size_t count = group.names().size();
+  if (count == 0) throw FileError(group.file(), group.path(), "holds no time window", "at least one, named 0");
+  std::vector<TimeWindow> windows;
+  double end = 0.0;
+  int first = 0;
+  for (std::size_t w = 0; w < count; ++w) {
+    const hdf5::Group one = window(w);
+    const TimeWindow read{one.real("end"), first, static_cast<int>(one.group("basis").integer("rank"))};
+    if (!(read.end > end)) {
+      throw FileError(one.file(), one.path() + ", attribute end", fmt::format("{} s", read.end),
+                      fmt::format("a time after {} s, where the window begins", end));
+    }
+    if (read.size < 1) {
+      throw FileError(one.file(), one.path() + "/basis, attribute rank", std::to_string(read.size), "at least 1");
+    }
+    end = read.end;
+    first += read.size;
+    windows.push_back(read);
+  }
+  return windows;
+}
+
+hdf5::Group ReductionFile::window(std::size_t number) const {
+  return file_.group("windows").group(std::to_string(number));
+}
 
 void ReductionFile::require_time(const Teuchos::ParameterList& input) const {
   reduction_identity::require_time(file_, input.sublist("time"));
 }
 
-int ReductionFile::residual_rank() const {
-  return static_cast<int>(window().group("sample_mesh").integer("residual_rank"));
-}
-
-std::unique_ptr<AffineBasis> ReductionFile::basis(const Map& particles) const {
-  const hdf5::Group group = window().group("basis");
-  const MatrixView reference = unfold(group.read_rows("reference", particles), components_);
-  const MatrixView modes = unfold(group.read_rows("modes", particles), components_);
-  if (static_cast<int>(modes.extent(1)) != basis_rank_ || reference.extent(1) != 1) {
-    throw FileError(group.file(), group.path() + "/modes",
-                    fmt::format("has {} columns, reference has {}", modes.extent(1), reference.extent(1)),
-                    fmt::format("{} and 1", basis_rank_));
+ReductionFile::Rows ReductionFile::basis(const Map& particles) const {
+  const MatrixView reference = unfold(file_.read_rows("reference", particles), components_);
+  if (reference.extent(1) != 1) {
+    throw FileError(file_.file(), "/reference", fmt::format("has {} columns", reference.extent(1)), "one");
   }
-  return std::make_unique<AffineBasis>(VectorView(Kokkos::subview(reference, Kokkos::ALL, 0)), modes);
+  const MatrixView modes("kiln::rom::modes", reference.extent(0), coordinates());
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    const hdf5::Group group = window(w).group("basis");
+    const MatrixView own = unfold(group.read_rows("modes", particles), components_);
+    if (static_cast<int>(own.extent(1)) != windows_[w].size) {
+      throw FileError(group.file(), group.path() + "/modes", fmt::format("has {} columns", own.extent(1)),
+                      fmt::format("{}, its rank", windows_[w].size));
+    }
+    const auto columns = std::make_pair(windows_[w].first, windows_[w].first + windows_[w].size);
+    Kokkos::deep_copy(Kokkos::subview(modes, Kokkos::ALL, columns), own);
+  }
+  return {VectorView(Kokkos::subview(reference, Kokkos::ALL, 0)), modes};
 }
 
-SampleMesh ReductionFile::sample_mesh() const {
-  const hdf5::Group group = window().group("sample_mesh");
+SampleMesh ReductionFile::sample_mesh(std::size_t number) const {
+  const hdf5::Group group = window(number).group("sample_mesh");
+  const auto ascending_ids = [&group](const char* name) {
+    const hdf5::Array<long long> ids = group.integers(name, {0});
+    if (std::adjacent_find(ids.values.begin(), ids.values.end(), std::greater_equal<long long>()) != ids.values.end()) {
+      throw FileError(group.file(), group.path() + "/" + name, "particle ids are not in ascending order");
+    }
+    return std::vector<GlobalIndex>(ids.values.begin(), ids.values.end());
+  };
   SampleMesh mesh;
-  const hdf5::Array<long long> rows = group.integers("rows", {0});
-  mesh.rows.assign(rows.values.begin(), rows.values.end());
-  mesh.sources = ParticleTable::read(group, "sources", components_, basis_rank_);
-  mesh.queries = ParticleTable::read(window().group("queries"), "particles", components_, basis_rank_);
-  mesh.gappy_operator =
-      group.reals("gappy_operator", {static_cast<std::size_t>(residual_rank()), mesh.rows.size() * components_});
+  mesh.rows = ascending_ids("rows");
+  mesh.sources = ascending_ids("sources");
+  mesh.gappy_operator = group.reals(
+      "gappy_operator", {static_cast<std::size_t>(group.integer("residual_rank")), mesh.rows.size() * components_});
   mesh.sigma_min = group.real("sigma_min");
   mesh.condition = group.real("condition");
   return mesh;
 }
 
-hdf5::Group ReductionFile::sample_model() const { return window().group("sample_mesh").group("model"); }
+hdf5::Group ReductionFile::sample_model(std::size_t number) const {
+  return window(number).group("sample_mesh").group("model");
+}
 
-std::unique_ptr<AffineBasis> basis_at(const Map& particles, const std::vector<const ParticleTable*>& tables,
-                                      const std::string& file) {
-  const ParticleTable& first = *tables.front();
-  const std::size_t components = first.components, modes = first.modes.shape[1] / components;
+ParticleTable ReductionFile::held_particles() const {
+  return ParticleTable::read(file_.group("particles"), components_, coordinates());
+}
+
+std::vector<GlobalIndex> ReductionFile::queries() const {
+  const hdf5::Array<long long> ids = file_.group("particles").integers("queries", {0});
+  return {ids.values.begin(), ids.values.end()};
+}
+
+ReductionFile::Rows rows_at(const Map& particles, const ParticleTable& table, std::size_t columns,
+                            const std::string& file) {
+  const std::size_t components = table.components, stride = table.modes.shape[1];
   const std::size_t count = particles.getMyGlobalIndices().extent(0);
   VectorView reference("kiln::rom::reference", count * components);
-  MatrixView values("kiln::rom::modes", count * components, modes);
+  MatrixView modes("kiln::rom::modes", count * components, columns);
   std::optional<Fault> fault;
   for (std::size_t i = 0; i < count; ++i) {
     const GlobalIndex id = particles.getGlobalElement(static_cast<LocalIndex>(i));
-    const auto table = std::find_if(tables.begin(), tables.end(), [id](const auto* t) { return t->find(id) >= 0; });
-    if (table == tables.end()) {
+    const std::ptrdiff_t row = table.find(id);
+    if (row < 0) {
       fault = Fault{"", fmt::format("holds no basis row of particle {}", id), {}};
       break;
     }
-    const std::size_t row = (*table)->find(id);
     for (std::size_t c = 0; c < components; ++c) {
-      reference(i * components + c) = (*table)->reference.values[row * components + c];
-      for (std::size_t k = 0; k < modes; ++k) {
-        values(i * components + c, k) = (*table)->modes.values[(row * modes + k) * components + c];
+      reference(i * components + c) = table.reference.values[row * components + c];
+      for (std::size_t k = 0; k < columns; ++k) {
+        modes(i * components + c, k) = table.modes.values[row * stride + k * components + c];
       }
     }
   }
   throw_together(*particles.getComm(), file, fault);
-  return std::make_unique<AffineBasis>(reference, values);
+  return {reference, modes};
 }
 
 }  // namespace kiln

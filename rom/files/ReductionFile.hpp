@@ -3,18 +3,19 @@
 #include <Teuchos_ParameterList.hpp>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "framework/files/Hdf5.hpp"
-#include "rom/basis/AffineBasis.hpp"
+#include "rom/basis/TimeWindow.hpp"
 #include "rom/files/ParticleRows.hpp"
 
 namespace kiln {
 
-/// What a hyper-reduced run reads: nothing in it grows with the number of particles N of the full model.
+/// What a hyper-reduced run reads of one time window: nothing in it grows with the number of particles N of the full
+/// model.
 struct SampleMesh {
-  std::vector<GlobalIndex> rows;  ///< sampled particles, ascending
-  ParticleTable sources;
-  ParticleTable queries;
+  std::vector<GlobalIndex> rows;       ///< sampled particles, ascending
+  std::vector<GlobalIndex> sources;    ///< likewise
   hdf5::Array<double> gappy_operator;  ///< residual modes × (rows × components)
   double sigma_min;
   double condition;
@@ -34,27 +35,39 @@ class ReductionFile {
 
   const hdf5::Group& root() const { return file_; }
   int components() const { return components_; }
-  int basis_rank() const { return basis_rank_; }
-  int residual_rank() const;
   long long particles() const { return particles_; }
+  /// In the order of time; their coordinates lie one after the other.
+  const std::vector<TimeWindow>& windows() const { return windows_; }
+  /// Number of coordinates of all windows.
+  int coordinates() const { return windows_.back().first + windows_.back().size; }
 
-  /// The basis on the particles of a map, read from the full one.
-  std::unique_ptr<AffineBasis> basis(const Map& particles) const;
-  SampleMesh sample_mesh() const;
+  /// u_ref and [Φ_0 Φ_1 …] at the particles of a map.
+  struct Rows {
+    VectorView reference;
+    MatrixView modes;
+  };
+  Rows basis(const Map& particles) const;
+
+  SampleMesh sample_mesh(std::size_t window) const;
   /// The group Model::save_sample wrote.
-  hdf5::Group sample_model() const;
+  hdf5::Group sample_model(std::size_t window) const;
+  /// The sources of all sample meshes and the queried particles.
+  ParticleTable held_particles() const;
+  std::vector<GlobalIndex> queries() const;
 
  private:
-  hdf5::Group window() const;
+  hdf5::Group window(std::size_t number) const;
+  std::vector<TimeWindow> read_windows() const;
+
   hdf5::File file_;
   int components_;
-  int basis_rank_;
   long long particles_;
+  std::vector<TimeWindow> windows_;
 };
 
-/// An affine basis on chosen particles of one or more tables; a particle is taken from the first table that has it.
-/// Throws FileError naming `file` for a particle in none of them. Collective over the map's ranks.
-std::unique_ptr<AffineBasis> basis_at(const Map& particles, const std::vector<const ParticleTable*>& tables,
-                                      const std::string& file);
+/// The rows of a table at the particles of a map, and of its modes the first `columns`. Throws FileError naming `file`
+/// for a particle it lacks. Collective over the map's ranks.
+ReductionFile::Rows rows_at(const Map& particles, const ParticleTable& table, std::size_t columns,
+                            const std::string& file);
 
 }  // namespace kiln

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/report/Provenance.hpp"
 #include "rom/files/ParticleRows.hpp"
@@ -38,54 +37,73 @@ hdf5::Array<double> row_major(const MatrixView& matrix) {
   return array;
 }
 
-void write_basis(hdf5::Group group, const Reduction& reduction, const MatrixView& reference, int components) {
-  const Map& rows = *reduction.model.rows();
-  group.write_rows("reference", rows, fold(reference, components));
-  group.attribute_of("reference", "unit", reduction.model.fields().front().unit);
-  group.write_rows("modes", rows, fold(reduction.basis.modes, components));
-  group.write("singular_values", reduction.basis.singular_values);
-  group.attribute("rank", static_cast<long long>(reduction.basis.truncation.rank));
-  group.attribute("energy", reduction.basis.truncation.energy);
+void write_basis(hdf5::Group group, const Map& rows, const Pod& basis, int components) {
+  group.write_rows("modes", rows, fold(basis.modes, components));
+  group.write("singular_values", basis.singular_values);
+  group.attribute("rank", static_cast<long long>(basis.truncation.rank));
+  group.attribute("energy", basis.truncation.energy);
 }
 
-void write_sample_mesh(hdf5::Group group, const Reduction& reduction, const MatrixView& reference, int components) {
-  group.write("rows", std::vector<long long>(reduction.sampled.begin(), reduction.sampled.end()));
-  ParticleTable::gather(all_ids(*reduction.sample.sources()), *reduction.model.rows(), reduction.model.positions(),
-                        reference, reduction.basis.modes, components)
-      .write(group, "sources");
-  group.write("gappy_operator", row_major(reduction.gappy_operator.matrix));
-  group.write("residual_singular_values", reduction.residual_basis.singular_values);
-  group.attribute("residual_rank", static_cast<long long>(reduction.residual_basis.truncation.rank));
-  group.attribute("residual_energy", reduction.residual_basis.truncation.energy);
-  group.attribute("sigma_min", reduction.gappy_operator.smallest_singular_value);
-  group.attribute("condition", reduction.gappy_operator.condition);
+void write_sample_mesh(hdf5::Group group, const WindowReduction& window, const std::vector<GlobalIndex>& sources) {
+  group.write("rows", std::vector<long long>(window.sampled.begin(), window.sampled.end()));
+  group.write("sources", std::vector<long long>(sources.begin(), sources.end()));
+  group.write("gappy_operator", row_major(window.gappy_operator.matrix));
+  group.write("residual_singular_values", window.residual_basis.singular_values);
+  group.attribute("residual_rank", static_cast<long long>(window.residual_basis.truncation.rank));
+  group.attribute("residual_energy", window.residual_basis.truncation.energy);
+  group.attribute("sigma_min", window.gappy_operator.smallest_singular_value);
+  group.attribute("condition", window.gappy_operator.condition);
   hdf5::Group model = group.create_group("model");
-  reduction.sample.save_sample(model);
+  window.sample->save_sample(model);
+}
+
+/// The modes of all windows, side by side.
+MatrixView stacked_modes(const Reduction& reduction) {
+  std::size_t columns = 0;
+  for (const WindowReduction& window : reduction.windows) columns += window.basis.modes.extent(1);
+  const MatrixView stacked("kiln::rom::modes of all windows", reduction.reference.extent(0), columns);
+  std::size_t first = 0;
+  for (const WindowReduction& window : reduction.windows) {
+    const auto end = first + window.basis.modes.extent(1);
+    Kokkos::deep_copy(Kokkos::subview(stacked, Kokkos::ALL, std::make_pair(first, end)), window.basis.modes);
+    first = end;
+  }
+  return stacked;
 }
 
 }  // namespace
 
-void write_reduction(const std::filesystem::path& file, const Reduction& reduction) {
-  const Teuchos::RCP<const Communicator> communicator = reduction.model.rows()->getComm();
+void write_reduction(const std::string& file, const Reduction& reduction) {
+  const Map& rows = *reduction.model.rows();
+  const Teuchos::RCP<const Communicator> communicator = rows.getComm();
   const int components = static_cast<int>(reduction.model.fields().size());
   const MatrixView reference(reduction.reference.data(), reduction.reference.extent(0), 1);
-  AtomicPath path(file, communicator);
-  {
-    hdf5::File root = hdf5::File::create(path.temporary(), communicator);
-    reduction_identity::write(root, reduction.input, reduction.model.parameters());
-    root.attribute("provenance", provenance(*communicator).dump());
-    root.attribute("components", static_cast<long long>(components));
-    root.attribute("particles", static_cast<long long>(reduction.model.rows()->getGlobalNumElements()));
-    hdf5::Group window = root.create_group("windows").create_group("0");
-    write_basis(window.create_group("basis"), reduction, reference, components);
-    write_sample_mesh(window.create_group("sample_mesh"), reduction, reference, components);
-    hdf5::Group queries = window.create_group("queries");
-    ParticleTable::gather(reduction.queries, *reduction.model.rows(), reduction.model.positions(), reference,
-                          reduction.basis.modes, components)
-        .write(queries, "particles");
-    root.flush();
+  hdf5::File root = hdf5::File::create(file, communicator);
+  reduction_identity::write(root, reduction.input, reduction.model.parameters());
+  root.attribute("provenance", provenance(*communicator).dump());
+  root.attribute("components", static_cast<long long>(components));
+  root.attribute("particles", static_cast<long long>(rows.getGlobalNumElements()));
+  root.write_rows("reference", rows, fold(reference, components));
+  root.attribute_of("reference", "unit", reduction.model.fields().front().unit);
+
+  hdf5::Group windows = root.create_group("windows");
+  std::vector<GlobalIndex> held = reduction.queries;
+  for (std::size_t w = 0; w < reduction.windows.size(); ++w) {
+    const WindowReduction& window = reduction.windows[w];
+    hdf5::Group group = windows.create_group(std::to_string(w));
+    group.attribute("end", window.end);
+    write_basis(group.create_group("basis"), rows, window.basis, components);
+    const std::vector<GlobalIndex> sources = all_ids(*window.sample->sources());
+    write_sample_mesh(group.create_group("sample_mesh"), window, sources);
+    held.insert(held.end(), sources.begin(), sources.end());
   }
-  path.commit();
+  std::sort(held.begin(), held.end());
+  held.erase(std::unique(held.begin(), held.end()), held.end());
+  hdf5::Group particles = root.create_group("particles");
+  ParticleTable::gather(held, rows, reduction.model.positions(), reference, stacked_modes(reduction), components)
+      .write(particles);
+  particles.write("queries", std::vector<long long>(reduction.queries.begin(), reduction.queries.end()));
+  root.flush();
 }
 
 }  // namespace kiln

@@ -58,7 +58,7 @@ Truncation truncate(const std::vector<double>& singular_values, const PodSetting
     throw InputError(settings.path, fmt::format("all {} snapshots are zero", singular_values.size()),
                      "snapshots that differ from the reference state");
   }
-  if (settings.rank && *settings.rank > independent) {
+  if (settings.rank && *settings.rank > independent && !settings.rank_is_cap) {
     throw InputError(
         settings.path + ".rank",
         fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "

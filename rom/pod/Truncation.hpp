@@ -21,6 +21,7 @@ struct PodSettings {
   Algorithm algorithm = Algorithm::gram;
   EnergyOf energy_of = EnergyOf::squared_singular_values;
   std::optional<int> rank;
+  bool rank_is_cap = false;      ///< fewer vectors will do where the snapshots hold no more
   std::optional<double> energy;  ///< fraction in (0, 1]
 
   PodSettings() = default;

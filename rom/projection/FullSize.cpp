@@ -3,6 +3,7 @@
 #include <Tpetra_Map.hpp>
 
 #include "framework/registry/Registry.hpp"
+#include "rom/basis/AffineBasis.hpp"
 
 namespace kiln {
 
@@ -12,22 +13,32 @@ Specification reduced_specification() {
   return s;
 }
 
-PetrovGalerkin::Parts full_size_parts(std::shared_ptr<Model> model, std::unique_ptr<TrialSpace> on_sources,
-                                      std::unique_ptr<TrialSpace> on_rows, std::unique_ptr<TestBasis> test) {
-  const Teuchos::RCP<const Map> rows = model->rows();
-  const std::size_t count = rows->getMyGlobalIndices().extent(0);
-  const ConstPositionView positions =
-      Kokkos::subview(model->positions(), std::make_pair(std::size_t(0), count), Kokkos::ALL);
-  return {std::move(model), std::move(on_sources), std::move(test), {rows, positions, std::move(on_rows)}};
+PetrovGalerkin::Parts full_size_parts(const std::shared_ptr<Model>& model, const std::vector<TimeWindow>& windows,
+                                      ConstVectorView reference, ConstMatrixView modes,
+                                      const std::function<std::unique_ptr<TestBasis>()>& test_basis) {
+  const std::size_t particles = model->rows()->getMyGlobalIndices().extent(0);
+  const std::size_t rows = particles * model->fields().size();
+  PetrovGalerkin::Parts parts;
+  parts.particles = model->rows();
+  parts.positions = Kokkos::subview(model->positions(), std::make_pair(std::size_t(0), particles), Kokkos::ALL);
+  for (const TimeWindow& window : windows) {
+    const ConstMatrixView on_sources = dense::leading_columns(modes, window.first + window.size);
+    const ConstVectorView reference_of_rows = Kokkos::subview(reference, std::make_pair(std::size_t(0), rows));
+    parts.windows.push_back(
+        {window.end,
+         {model, std::make_unique<AffineBasis>(reference, on_sources, window.first), test_basis()},
+         std::make_unique<AffineBasis>(reference_of_rows, dense::row_block(on_sources, 0, rows), window.first)});
+  }
+  return parts;
 }
 
-PetrovGalerkin::Parts full_size_parts(const Method::Context& context, std::unique_ptr<TestBasis> test) {
+PetrovGalerkin::Parts full_size_parts(const Method::Context& context,
+                                      const std::function<std::unique_ptr<TestBasis>()>& test_basis) {
   const ReductionFile reduction(context.input, context.communicator);
-  std::shared_ptr<Model> model =
+  const std::shared_ptr<Model> model =
       Registry<Model>::create(context.input.sublist("model"), Model::Context{context.communicator});
-  std::unique_ptr<TrialSpace> on_sources = reduction.basis(*model->sources());
-  std::unique_ptr<TrialSpace> on_rows = reduction.basis(*model->rows());
-  return full_size_parts(std::move(model), std::move(on_sources), std::move(on_rows), std::move(test));
+  const ReductionFile::Rows rows = reduction.basis(*model->sources());
+  return full_size_parts(model, reduction.windows(), rows.reference, rows.modes, test_basis);
 }
 
 }  // namespace kiln

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <functional>
+
 #include "framework/registry/Specification.hpp"
+#include "rom/basis/TimeWindow.hpp"
 #include "rom/files/ReductionFile.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
 
@@ -9,11 +12,14 @@ namespace kiln {
 /// Keys that galerkin, lspg and gnat share.
 Specification reduced_specification();
 
-/// Parts of a projection on all rows of a full-order model: state, positions and test space are of size N.
-PetrovGalerkin::Parts full_size_parts(std::shared_ptr<Model> model, std::unique_ptr<TrialSpace> on_sources,
-                                      std::unique_ptr<TrialSpace> on_rows, std::unique_ptr<TestBasis> test);
+/// The parts of reduced methods on all rows of a full-order model: state, positions and test space are of size N.
+/// `reference` and `modes`, [Φ_0 Φ_1 …], stand on the model's sources.
+PetrovGalerkin::Parts full_size_parts(const std::shared_ptr<Model>& model, const std::vector<TimeWindow>& windows,
+                                      ConstVectorView reference, ConstMatrixView modes,
+                                      const std::function<std::unique_ptr<TestBasis>()>& test_basis);
 
-/// The same for the input's model and the basis of its reduction file.
-PetrovGalerkin::Parts full_size_parts(const Method::Context& context, std::unique_ptr<TestBasis> test);
+/// The same for the input's model and the bases of its reduction file.
+PetrovGalerkin::Parts full_size_parts(const Method::Context& context,
+                                      const std::function<std::unique_ptr<TestBasis>()>& test_basis);
 
 }  // namespace kiln

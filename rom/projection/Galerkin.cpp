@@ -8,7 +8,7 @@ class Galerkin : public PetrovGalerkin {
  public:
   static Specification specification() { return reduced_specification(); }
   Galerkin(const Teuchos::ParameterList&, const Context& context)
-      : PetrovGalerkin(full_size_parts(context, std::make_unique<GalerkinTestBasis>()),
+      : PetrovGalerkin(full_size_parts(context, [] { return std::make_unique<GalerkinTestBasis>(); }),
                        NewtonSettings(context.input.sublist("time").sublist("newton"))) {}
 };
 

@@ -8,7 +8,7 @@ class Lspg : public PetrovGalerkin {
  public:
   static Specification specification() { return reduced_specification(); }
   Lspg(const Teuchos::ParameterList&, const Context& context)
-      : PetrovGalerkin(full_size_parts(context, std::make_unique<LspgTestBasis>()),
+      : PetrovGalerkin(full_size_parts(context, [] { return std::make_unique<LspgTestBasis>(); }),
                        NewtonSettings(context.input.sublist("time").sublist("newton"))) {}
 };
 

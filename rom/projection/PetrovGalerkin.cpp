@@ -1,222 +1,101 @@
 #include "rom/projection/PetrovGalerkin.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>
-#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
-#include "framework/method/Divergence.hpp"
+#include "framework/files/Hdf5.hpp"
 
 namespace kiln {
 namespace {
 
-/// A residual this many times the step's first one will not come back.
-constexpr double growth_limit = 1e6;
-
-// A label made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
-const std::string residual_label = "kiln::rom::residual";
-
-void form_residual(const StepResidual& step, ConstVectorView u, ConstVectorView f, VectorView r) {
-  const double alpha = step.alpha, gamma = step.gamma;
-  const ConstVectorView history = step.history;
-  Kokkos::parallel_for(
-      residual_label, RangePolicy(0, static_cast<LocalIndex>(r.extent(0))),
-      KOKKOS_LAMBDA(const LocalIndex i) { r(i) = alpha * u(i) - gamma * f(i) + history(i); });
-}
-
-double norm_of(const VectorView& values) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < values.extent(0); ++k) sum += values(k) * values(k);
-  return std::sqrt(sum);
-}
-
-void copy(const ConstVectorView& from, const VectorView& to) { std::copy_n(from.data(), to.extent(0), to.data()); }
+/// Step times are sums of round-off; a step that ends at a window's end belongs to that window.
+constexpr double round_off = 1e-9;
 
 }  // namespace
 
 PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings)
-    : model_(std::move(parts.model)),
-      trial_(std::move(parts.trial)),
-      test_basis_(std::move(parts.test)),
-      held_(std::move(parts.held)),
-      settings_(settings),
-      communicator_(model_->rows()->getComm()),
-      coordinates_(Teuchos::rcp(new Map(trial_->size(), 0, communicator_, Tpetra::LocallyReplicated))),
-      jacobian_(*model_, settings.jacobian) {
-  const std::size_t components = model_->fields().size(), size = trial_->size();
-  const std::size_t rows = model_->rows()->getMyGlobalIndices().extent(0) * components;
-  row_size_ = static_cast<LocalIndex>(rows);
-  frozen_.x = VectorView("kiln::rom::frozen coordinates", size);
-  jacobian_tangent_ = MatrixView("kiln::rom::J Phi", rows, size);
-  small_ = MatrixView("kiln::rom::reduced Jacobian", size, size);
-  state_ =
-      VectorView("kiln::rom::state of the sources", model_->sources()->getMyGlobalIndices().extent(0) * components);
-  rate_ = VectorView("kiln::rom::rate", rows);
-  residual_ = VectorView("kiln::rom::residual", rows);
-  g_ = VectorView("kiln::rom::reduced residual", size);
-  local_g_ = VectorView("kiln::rom::reduced residual of this rank", size);
-  step_ = VectorView("kiln::rom::update", size);
+    : particles_(std::move(parts.particles)), positions_(parts.positions), settings_(settings) {
+  for (Window& window : parts.windows) {
+    windows_.push_back(
+        {window.end, std::make_unique<Projection>(std::move(window.projection), settings), std::move(window.held)});
+  }
+  const TrialSpace& last = windows_.back().projection->trial();
+  coordinates_ = Teuchos::rcp(
+      new Map(last.first() + last.size(), 0, projection().model().rows()->getComm(), Tpetra::LocallyReplicated));
+  parameters_ = projection().model().parameters();
+  const Model* first = &projection().model();
+  for (const OwnedWindow& window : windows_) {
+    if (&window.projection->model() != first) parameters_.mirror(window.projection->model().parameters());
+  }
 }
 
-void PetrovGalerkin::initial(VectorView x) const {
-  Kokkos::deep_copy(x, 0.0);
-  VectorView reference("kiln::rom::reference", state_.extent(0)), difference("kiln::rom::initial", state_.extent(0));
-  trial_->state(x, reference);
-  model_->initial_state(difference);
-  double differs = 0.0;
-  for (LocalIndex i = 0; i < row_size_; ++i) {
-    difference(i) -= reference(i);
-    if (difference(i) != 0.0) differs = 1.0;
-  }
-  dense::sum_over_ranks(*communicator_, &differs, 1);
-  if (differs == 0.0) return;
+std::size_t PetrovGalerkin::window_at(double time) const {
+  const auto serves = [time](const OwnedWindow& window) { return time <= window.end * (1.0 + round_off); };
+  const auto found = std::find_if(windows_.begin(), windows_.end() - 1, serves);
+  return static_cast<std::size_t>(found - windows_.begin());
+}
 
-  const ConstMatrixView tangent = dense::row_block(trial_->tangent(x), 0, row_size_);
-  MatrixView normal = dense::gram(tangent);
-  dense::sum_over_ranks(*communicator_, normal.data(), normal.size());
-  dense::multiply_transposed(1.0, tangent, Kokkos::subview(difference, std::make_pair(0, row_size_)), 0.0, x);
-  dense::sum_over_ranks(*communicator_, x.data(), x.size());
-  dense::LuFactors factors;
-  if (!(factors.factor(normal) > 1e-14)) {
-    throw DivergenceError("the initial state cannot be told in the trial space: its rows are dependent", 0.0);
-  }
-  factors.solve(x);
+bool PetrovGalerkin::begin_step(double time) {
+  const std::size_t window = window_at(time);
+  if (window == current_) return false;
+  current_ = window;
+  projection().forget_jacobian();
+  return true;
 }
 
 void PetrovGalerkin::evaluate(ConstVectorView x, double time, VectorView u, VectorView f) {
-  trial_->state(x, state_);
-  model_->rate(state_, time, f);
-  copy(state_, u);
-}
-
-bool PetrovGalerkin::linearised_for(double alpha, double gamma) const {
-  return frozen_.age >= 0 && frozen_.alpha == alpha && frozen_.gamma == gamma && (trial_->affine() || gamma != 0.0);
-}
-
-void PetrovGalerkin::linearise(double alpha, double gamma, ConstVectorView x, double time) {
-  const ConstMatrixView tangent = trial_->tangent(x);
-  const ConstMatrixView tangent_rows = dense::row_block(tangent, 0, row_size_);
-  if (gamma != 0.0) {
-    trial_->state(x, state_);
-    jacobian_.take(state_, time);
-    jacobian_.apply(tangent, jacobian_tangent_);
-  }
-  for (std::size_t k = 0; k < tangent.extent(1); ++k) {
-    for (LocalIndex i = 0; i < row_size_; ++i) {
-      const double rate_part = gamma != 0.0 ? gamma * jacobian_tangent_(i, k) : 0.0;
-      jacobian_tangent_(i, k) = alpha * tangent_rows(i, k) - rate_part;
-    }
-  }
-  test_ = test_basis_->form(tangent_rows, jacobian_tangent_, *communicator_);
-  dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test_, jacobian_tangent_, 0.0, small_);
-  dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
-  reciprocal_condition_ = factors_.factor(small_);
-  if (!(reciprocal_condition_ > 1e-15)) {
-    throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows",
-                          time);
-  }
-  copy(x, frozen_.x);
-  frozen_.alpha = alpha;
-  frozen_.gamma = gamma;
-  frozen_.time = time;
-  frozen_.age = 0;
-  ++linearisations_;
-}
-
-void PetrovGalerkin::project(ConstVectorView rows, VectorView g) {
-  if (communicator_->getSize() == 1) return dense::multiply_transposed(1.0, test_, rows, 0.0, g);
-  dense::multiply_transposed(1.0, test_, rows, 0.0, local_g_);
-  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, static_cast<int>(g.extent(0)), local_g_.data(), g.data());
-}
-
-int PetrovGalerkin::rate(ConstVectorView x, double time, VectorView dxdt) {
-  if (!linearised_for(1.0, 0.0)) linearise(1.0, 0.0, x, time);
-  trial_->state(x, state_);
-  model_->rate(state_, time, rate_);
-  if (observer_) observer_(rate_);
-  project(rate_, dxdt);
-  if (!std::isfinite(norm_of(dxdt))) throw_diverged("the rate is not finite", time, rate_, rate_);
-  factors_.solve(dxdt);
-  return 1;
-}
-
-double PetrovGalerkin::reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f) {
-  trial_->state(x, state_);
-  model_->rate(state_, residual.time, f);
-  form_residual(residual, state_, f, residual_);
-  if (observer_) observer_(residual_);
-  project(residual_, g_);
-  const double norm = norm_of(g_);
-  if (!std::isfinite(norm)) throw_diverged("the residual is not finite", residual.time, f, residual_);
-  return norm;
-}
-
-double PetrovGalerkin::search_line(const StepResidual& residual, VectorView x, VectorView f, double norm, double next,
-                                   SolveReport& report) {
-  constexpr int halvings = 8;
-  double fraction = 1.0;
-  for (int k = 0; k < halvings && !(next < norm); ++k) {
-    fraction *= 0.5;
-    for (std::size_t i = 0; i < x.extent(0); ++i) x(i) += fraction * step_(i);
-    next = reduced_residual(residual, x, f);
-    ++report.residuals;
-  }
-  return next;
+  projection().evaluate(x, time, u, f);
 }
 
 SolveReport PetrovGalerkin::solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) {
-  const bool frozen_serves = residual.gamma == 0.0 || frozen_.age < settings_.refresh;
-  if (!linearised_for(residual.alpha, residual.gamma) || !frozen_serves) {
-    linearise(residual.alpha, residual.gamma, x, residual.time);
-  }
-  ++frozen_.age;
-  if (residual.gamma == 0.0 && trial_->affine()) return solve_explicit(residual, x, u, f);
-
-  SolveReport report;
-  double norm = reduced_residual(residual, x, f);
-  report.residuals = 1;
-  report.first_norm = norm;
-  const double goal = settings_.tolerance * norm;
-  while (norm > goal && report.iterations < settings_.iterations) {
-    copy(g_, step_);
-    factors_.solve(step_);
-    for (std::size_t i = 0; i < x.extent(0); ++i) x(i) -= step_(i);
-    ++report.iterations;
-    const double next = reduced_residual(residual, x, f);
-    ++report.residuals;
-    norm = settings_.line_search ? search_line(residual, x, f, norm, next, report) : next;
-    if (norm > growth_limit * report.first_norm) {
-      throw_diverged("the reduced residual has grown a million times in one step", residual.time, f, residual_);
-    }
-  }
-  report.last_norm = norm;
-  report.converged = norm <= goal;
-  copy(state_, u);
-  return report;
+  return projection().solve(residual, x, u, f);
 }
 
-SolveReport PetrovGalerkin::solve_explicit(const StepResidual& residual, VectorView x, VectorView u, VectorView f) {
-  trial_->state(x, state_);
-  // The rate's factor is zero; any finite array may stand for it.
-  form_residual(residual, state_, residual.history, residual_);
-  if (observer_) observer_(residual_);
-  project(residual_, g_);
-  SolveReport report;
-  report.first_norm = norm_of(g_);
-  if (!std::isfinite(report.first_norm)) {
-    throw_diverged("the residual is not finite", residual.time, residual.history, residual_);
-  }
-  factors_.solve(g_);
-  for (std::size_t i = 0; i < x.extent(0); ++i) x(i) -= g_(i);
-  evaluate(x, residual.time, u, f);
-  report.residuals = report.iterations = 1;
-  return report;
+Method::Reader PetrovGalerkin::reader(const std::vector<LocalIndex>& places) const {
+  const int components = static_cast<int>(fields().size());
+  std::vector<std::shared_ptr<const TrialSpace>> spaces;
+  for (const OwnedWindow& window : windows_) spaces.push_back(window.held->restricted(places, components));
+  return [this, spaces = std::move(spaces)](ConstVectorView x, VectorView u) { spaces[current_]->state(x, u); };
 }
 
-void PetrovGalerkin::throw_diverged(const std::string& what, double time, ConstVectorView f,
-                                    ConstVectorView measure) const {
-  throw divergence(*model_, what, time, Kokkos::subview(state_, std::make_pair(LocalIndex(0), row_size_)), f, measure);
+void PetrovGalerkin::save(hdf5::Group& group) const {
+  group.attribute("window", static_cast<long long>(current_));
+  projection().save(group);
+}
+
+void PetrovGalerkin::restore(const hdf5::Group& group) {
+  const long long window = group.integer("window");
+  if (window < 0 || window >= static_cast<long long>(windows_.size())) {
+    throw FileError(group.file(), group.path() + ", attribute window", std::to_string(window),
+                    "a time window of the reduction: 0 to " + std::to_string(windows_.size() - 1));
+  }
+  current_ = static_cast<std::size_t>(window);
+  projection().restore(group, coordinates_->getMyGlobalIndices().extent(0));
+}
+
+void PetrovGalerkin::report(nlohmann::json& section) const {
+  int largest = 0;
+  long long linearisations = 0;
+  double condition = 1.0;
+  for (const OwnedWindow& window : windows_) {
+    largest = std::max(largest, window.projection->trial().size());
+    linearisations += window.projection->linearisations();
+    condition = std::min(condition, window.projection->reciprocal_condition());
+  }
+  section["time_windows"] = windows_.size();
+  section["basis_rank"] = largest;
+  section["coordinates"] = coordinates_->getGlobalNumElements();
+  section["rows"] = static_cast<long long>(projection().model().rows()->getGlobalNumElements());
+  section["jacobian"] = to_text(settings_.jacobian);
+  section["refresh"] = settings_.refresh;
+  section["linearisations"] = linearisations;
+  section["reduced_jacobian_reciprocal_condition"] = condition;
+}
+
+void PetrovGalerkin::observe_residuals(const std::function<void(ConstVectorView)>& observer) {
+  for (const OwnedWindow& window : windows_) window.projection->observe_residuals(observer);
 }
 
 }  // namespace kiln

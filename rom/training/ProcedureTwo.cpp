@@ -5,19 +5,20 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/method/FullOrder.hpp"
 #include "framework/model/Halo.hpp"
 #include "framework/model/MaskedModel.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
-#include "rom/basis/AffineBasis.hpp"
-#include "rom/files/Reduction.hpp"
 #include "rom/projection/FullSize.hpp"
-#include "rom/sampling/GappyOperator.hpp"
 #include "rom/sampling/Sampling.hpp"
 #include "rom/training/Queries.hpp"
 #include "rom/training/SnapshotObserver.hpp"
@@ -27,6 +28,11 @@ namespace {
 
 /// Below this, A = [PΦ_r]⁺ amplifies what Φ_r misses more than a hundredfold.
 constexpr double small_sigma = 1e-2;
+
+/// Moments at which the trial run's whole field is compared with the full-order one.
+constexpr int trial_moments = 20;
+/// How often windows are cut shorter for an error they have missed.
+constexpr int most_attempts = 4;
 
 Specification snapshot_specification() {
   Specification s;
@@ -38,26 +44,6 @@ Specification query_specification() {
   Specification s;
   s.reals("position", "where; the nearest particle is taken").unit("m").length(3);
   return s;
-}
-
-/// The modes on a model's sources, from those on its rows.
-MatrixView on_sources(const Model& model, const MatrixView& modes) {
-  const Halo halo(model);
-  const MatrixView sources("kiln::rom::modes at the sources", halo.source_size(), modes.extent(1));
-  const MultiVector from(halo.rows(), modes);
-  MultiVector to(halo.sources(), sources);
-  halo.bring(from, to);
-  return sources;
-}
-
-VectorView initial_state(const Model& model) {
-  VectorView state("kiln::rom::initial state", model.sources()->getMyGlobalIndices().extent(0) * model.fields().size());
-  model.initial_state(state);
-  return state;
-}
-
-VectorView leading(const VectorView& values, std::size_t count) {
-  return Kokkos::subview(values, std::make_pair(std::size_t(0), count));
 }
 
 nlohmann::json facts_of(const Pod& pod) {
@@ -92,8 +78,11 @@ MatrixView sampled_rows(const Map& rows, const MatrixView& modes, const std::vec
 
 Specification ProcedureTwo::specification() {
   Specification s;
-  s.section("basis", "trial basis, from snapshots of the state", PodSettings::specification());
-  s.section("residual_basis", "basis of the residual, from an LSPG run without hyper-reduction",
+  s.section("windows", "time windows, each with basis and sample mesh of its own; left out: one",
+            WindowSettings::specification())
+      .optional();
+  s.section("basis", "trial basis of a window, from snapshots of the state", PodSettings::specification());
+  s.section("residual_basis", "basis of a window's residual, from an LSPG run without hyper-reduction",
             PodSettings::specification());
   s.component<Sampling>("sampling", "which particles the hyper-reduced run evaluates").defaults_to("greedy");
   s.section("snapshots", "of the full-order state", snapshot_specification());
@@ -101,6 +90,12 @@ Specification ProcedureTwo::specification() {
              "further positions whose state online runs can tell; probes of the output are always among them",
              query_specification())
       .optional();
+  s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
+    const bool by_error = list.isSublist("windows") && list.sublist("windows").isParameter("error");
+    if (by_error && !list.sublist("basis").isParameter("rank")) {
+      problems.push_back({"windows.error", "goes with a basis of fixed rank, and basis has none", "basis.rank", {}});
+    }
+  });
   return s;
 }
 
@@ -112,100 +107,254 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
       span_(TimeSpan::of(context.input)),
       newton_(context.input.sublist("time").sublist("newton")),
       basis_settings_(block.sublist("basis")),
-      residual_settings_(block.sublist("residual_basis")) {}
+      residual_settings_(block.sublist("residual_basis")),
+      windows_(WindowSettings::of(block.isSublist("windows") ? &block.sublist("windows") : nullptr)),
+      every_(block.sublist("snapshots").get<int>("every")),
+      snapshots_(0),
+      trial_{{}, {}, {}, Snapshots(0)} {
+  // In one window a rank too high is a mistake; of several, some may hold less.
+  basis_settings_.rank_is_cap = residual_settings_.rank_is_cap = windows_.count != 1;
+}
 
 void ProcedureTwo::stage(const std::string& name, RunReport& report, const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
   const auto number = report.section("training")["stages"].size() + 1;
-  if (!quiet_ && communicator_->getRank() == 0) fmt::print(stderr, "training {}/5: {}\n", number, name);
+  if (!quiet_ && communicator_->getRank() == 0) fmt::print(stderr, "training, stage {}: {}\n", number, name);
   work();
   communicator_->barrier();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   report.section("training")["stages"].push_back({{"name", name}, {"wall_s", seconds.count()}});
 }
 
-LoopTotals ProcedureTwo::march(Method& method, std::vector<Observer*> observers, const std::string& label) {
-  VectorView x("kiln::rom::unknown", method.coordinates()->getMyGlobalIndices().extent(0));
+void ProcedureTwo::warn(const std::string& warning, RunReport& report) const {
+  report.section("training")["warnings"].push_back(warning);
+  if (communicator_->getRank() == 0) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+void ProcedureTwo::run_full_order(RunReport& report) {
+  FullOrder method(block_, Method::Context{input_, communicator_});
+  model_ = method.model();
+  reference_ = VectorView("kiln::rom::initial state", local_size(*model_->sources()) * model_->fields().size());
+  model_->initial_state(reference_);
+  snapshots_ = Snapshots(method.row_size());
+  SnapshotObserver observer(method, snapshots_, every_);
+  trial_.queries = nearest_particles(*model_, queried_positions(input_));
+  QueryRecord record(method, trial_.queries);
+
+  VectorView x("kiln::rom::unknown", method.row_size());
   method.initial(x);
   const std::unique_ptr<TimeScheme> scheme =
       Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{method, span_.step});
   scheme->start(x, 0.0);
-  ProgressObserver progress(label, 0, *communicator_);
+  ProgressObserver progress("full order", 0, *communicator_);
+  std::vector<Observer*> observers{&observer, &record};
   if (!quiet_) observers.push_back(&progress);
-  return run_time_loop(method, *scheme, x, span_, observers);
-}
+  const LoopTotals totals = run_time_loop(method, *scheme, x, span_, observers);
 
-Snapshots ProcedureTwo::run_full_order(RunReport& report) {
-  FullOrder method(block_, Method::Context{input_, communicator_});
-  model_ = method.model();
-  Snapshots snapshots(method.row_size());
-  SnapshotObserver observer(method, snapshots, block_.sublist("snapshots").get<int>("every"));
-  const LoopTotals totals = march(method, {&observer}, "full order");
   observer.finish(report);
+  trial_.query_values = record.values();
+  trial_.states = Snapshots(method.row_size());
+  const int count = static_cast<int>(snapshots_.count()), moments = std::min(count, trial_moments);
+  for (int k = 1; k <= moments; ++k) {
+    const int snapshot = static_cast<int>(static_cast<long long>(count) * k / moments);
+    trial_.steps.push_back(std::min(snapshot * every_, span_.last_step));
+    trial_.states.append(Kokkos::subview(snapshots_.matrix(), Kokkos::ALL, snapshot - 1));
+  }
   report.section("training")["full_order"] = {{"steps", totals.steps}, {"residuals", totals.residuals}};
-  return snapshots;
 }
 
-Snapshots ProcedureTwo::run_lspg(const Pod& basis, RunReport& report) {
-  const VectorView reference = initial_state(*model_);
-  PetrovGalerkin method(
-      full_size_parts(model_, std::make_unique<AffineBasis>(reference, on_sources(*model_, basis.modes)),
-                      std::make_unique<AffineBasis>(leading(reference, basis.modes.extent(0)), basis.modes),
-                      std::make_unique<LspgTestBasis>()),
-      newton_);
-  Snapshots residuals(method.row_size());
-  method.observe_residuals([&residuals](ConstVectorView residual) { residuals.append(residual); });
-  const LoopTotals totals = march(method, {}, "LSPG");
-  report.section("training")["lspg"] = {{"steps", totals.steps},
-                                        {"residuals", totals.residuals},
-                                        {"capped_steps", totals.capped_steps},
-                                        {"residual_snapshots", residuals.count()}};
-  return residuals;
+std::vector<int> ProcedureTwo::window_ends(double error) const {
+  const int snapshots = static_cast<int>(snapshots_.count());
+  std::vector<int> ends;
+  if (windows_.error) {
+    ends = windows_within(*costs_, *basis_settings_.rank, error);
+    // Round-off must not make ranks disagree.
+    int count = static_cast<int>(ends.size());
+    Teuchos::broadcast(*communicator_, 0, &count);
+    ends.resize(count);
+    Teuchos::broadcast(*communicator_, 0, count, ends.data());
+  } else if (windows_.count) {
+    const int count = std::min(*windows_.count, snapshots);
+    for (int w = 1; w <= count; ++w) ends.push_back(static_cast<int>(static_cast<long long>(snapshots) * w / count));
+  } else {
+    const int length = std::max(1, (*windows_.steps + every_ - 1) / every_);
+    for (int end = length; end < snapshots; end += length) ends.push_back(end);
+    ends.push_back(snapshots);
+  }
+  for (int& end : ends) end = std::min(end * every_, span_.last_step);
+  return ends;
+}
+
+std::vector<Pod> ProcedureTwo::window_bases(const std::vector<int>& ends, RunReport& report) const {
+  nlohmann::json& facts = report.section("training")["basis"];
+  facts = nlohmann::json::array();
+  std::vector<Pod> bases;
+  std::size_t begin = 0;
+  const MatrixView states = snapshots_.matrix();
+  for (const int step : ends) {
+    const std::size_t end = (step + every_ - 1) / every_;
+    Snapshots increments(snapshots_.rows());
+    VectorView increment("kiln::rom::increment", snapshots_.rows());
+    for (std::size_t n = begin; n < end; ++n) {
+      for (std::size_t i = 0; i < increment.extent(0); ++i) {
+        increment(i) = begin == 0 ? states(i, n) : states(i, n) - states(i, begin - 1);
+      }
+      increments.append(increment);
+    }
+    bases.push_back(pod(increments, basis_settings_, *communicator_));
+    facts.push_back(facts_of(bases.back()));
+    begin = end;
+  }
+  return bases;
+}
+
+std::unique_ptr<PetrovGalerkin> ProcedureTwo::lspg_method(const std::vector<int>& ends,
+                                                          const std::vector<Pod>& bases) const {
+  std::vector<TimeWindow> windows;
+  int first = 0;
+  for (std::size_t w = 0; w < ends.size(); ++w) {
+    const int size = bases[w].truncation.rank;
+    windows.push_back({ends[w] * span_.step, first, size});
+    first += size;
+  }
+  const Halo halo(*model_);
+  const MatrixView modes("kiln::rom::modes at the sources", halo.source_size(), first);
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto columns = std::make_pair(windows[w].first, windows[w].first + windows[w].size);
+    const MultiVector from(halo.rows(), bases[w].modes);
+    MultiVector to(halo.sources(), MatrixView(Kokkos::subview(modes, Kokkos::ALL, columns)));
+    halo.bring(from, to);
+  }
+  return std::make_unique<PetrovGalerkin>(
+      full_size_parts(model_, windows, reference_, modes, [] { return std::make_unique<LspgTestBasis>(); }), newton_);
+}
+
+WindowReduction ProcedureTwo::learn_window(double end, Pod basis, Snapshots& residuals) {
+  const int components = static_cast<int>(model_->fields().size());
+  Pod residual_basis = pod(residuals, residual_settings_, *communicator_);
+  residuals.clear();
+  const std::vector<GlobalIndex> sampled = Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
+                                               ->sample(*model_->rows(), residual_basis.modes, components);
+  GappyOperator gappy = gappy_operator(sampled_rows(*model_->rows(), residual_basis.modes, sampled, components),
+                                       block_.sublist("sampling").name());
+  residual_basis.modes = {};
+  return {end, std::move(basis), std::move(residual_basis), gappy, sampled, sampled_or_masked(model_, sampled)};
+}
+
+std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>& ends, std::vector<Pod> bases,
+                                                         PetrovGalerkin& lspg, RunReport& report) {
+  VectorView x("kiln::rom::unknown", lspg.coordinates()->getMyGlobalIndices().extent(0));
+  lspg.initial(x);
+  const std::unique_ptr<TimeScheme> scheme =
+      Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{lspg, span_.step});
+  scheme->start(x, 0.0);
+  Snapshots residuals(lspg.row_size());
+  lspg.observe_residuals([&residuals](ConstVectorView residual) { residuals.append(residual); });
+
+  nlohmann::json& facts = report.section("training");
+  facts["residual_basis"] = facts["sample_meshes"] = nlohmann::json::array();
+  LoopTotals totals;
+  std::size_t taken = 0;
+  std::vector<WindowReduction> windows;
+  int first_step = 0;
+  for (std::size_t w = 0; w < ends.size(); ++w) {
+    const std::string label = ends.size() == 1 ? "LSPG" : fmt::format("LSPG, window {}/{}", w + 1, ends.size());
+    ProgressObserver progress(label, first_step, *communicator_);
+    std::vector<Observer*> observers;
+    if (!quiet_) observers.push_back(&progress);
+    const LoopTotals part = run_time_loop(lspg, *scheme, x, {span_.step, first_step, ends[w]}, observers);
+    totals.steps += part.steps;
+    totals.residuals += part.residuals;
+    totals.capped_steps += part.capped_steps;
+    taken += residuals.count();
+    windows.push_back(learn_window(ends[w] * span_.step, std::move(bases[w]), residuals));
+    const WindowReduction& window = windows.back();
+    facts["residual_basis"].push_back(facts_of(window.residual_basis));
+    facts["sample_meshes"].push_back({{"end_s", window.end},
+                                      {"sampled", window.sampled.size()},
+                                      {"sigma_min", window.gappy_operator.smallest_singular_value},
+                                      {"gappy_condition", window.gappy_operator.condition}});
+    if (window.gappy_operator.smallest_singular_value < small_sigma) {
+      warn(fmt::format("the smallest singular value of PΦ_r is {:.2e} in the window that ends at {:g} s: the "
+                       "hyper-reduced residual may amplify what the residual basis misses by {:.0f}; take more "
+                       "samples or fewer residual modes",
+                       window.gappy_operator.smallest_singular_value, window.end,
+                       1.0 / window.gappy_operator.smallest_singular_value),
+           report);
+    }
+    first_step = ends[w];
+  }
+  lspg.observe_residuals({});
+  facts["lspg"] = {{"steps", totals.steps},
+                   {"residuals", totals.residuals},
+                   {"capped_steps", totals.capped_steps},
+                   {"residual_snapshots", taken}};
+  return windows;
+}
+
+TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunReport& report) {
+  std::vector<int> ends;
+  std::vector<Pod> bases;
+  stage("POD of the state", report, [&] {
+    ends = window_ends(error);
+    bases = window_bases(ends, report);
+  });
+  if (!windows_.error) snapshots_.clear();
+  std::unique_ptr<PetrovGalerkin> lspg;
+  std::vector<WindowReduction> windows;
+  stage("LSPG run, POD of its residuals, sampling", report, [&] {
+    lspg = lspg_method(ends, bases);
+    windows = learn_windows(ends, std::move(bases), *lspg, report);
+  });
+  stage("reduction file", report, [&] {
+    const VectorView rows = Kokkos::subview(reference_, std::make_pair(0, lspg->row_size()));
+    write_reduction(path, {input_, *model_, rows, std::move(windows), trial_.queries});
+  });
+  TrialErrors errors;
+  stage("trial run", report, [&] { errors = trial_run(input_, path, span_, trial_, *lspg, communicator_); });
+  report.section("training")["time_windows"] = ends.size();
+  report.section("training")["trial"] = errors.facts();
+  return errors;
 }
 
 void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   nlohmann::json& facts = report.section("training");
   facts["stages"] = nlohmann::json::array();
   facts["warnings"] = nlohmann::json::array();
+  stage("full-order run", report, [&] { run_full_order(report); });
+  facts["queried"] = trial_.queries.size();
 
-  Snapshots snapshots(0), residuals(0);
-  Pod basis, residual_basis;
-  stage("full-order run", report, [&] { snapshots = run_full_order(report); });
-  stage("POD of the state", report, [&] { basis = pod(snapshots, basis_settings_, *communicator_); });
-  facts["basis"] = facts_of(basis);
-  snapshots.clear();
-
-  stage("LSPG run", report, [&] { residuals = run_lspg(basis, report); });
-  const int components = static_cast<int>(model_->fields().size());
-  std::vector<GlobalIndex> sampled;
-  stage("POD of the residual and sampling", report, [&] {
-    residual_basis = pod(residuals, residual_settings_, *communicator_);
-    residuals.clear();
-    sampled = Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
-                  ->sample(*model_->rows(), residual_basis.modes, components);
-  });
-  facts["residual_basis"] = facts_of(residual_basis);
-
-  stage("sample mesh and file", report, [&] {
-    const GappyOperator gappy = gappy_operator(sampled_rows(*model_->rows(), residual_basis.modes, sampled, components),
-                                               block_.sublist("sampling").name());
-    facts["sampled"] = sampled.size();
-    facts["sigma_min"] = gappy.smallest_singular_value;
-    facts["gappy_condition"] = gappy.condition;
-    if (gappy.smallest_singular_value < small_sigma) {
-      const std::string warning = fmt::format(
-          "the smallest singular value of PΦ_r is {:.2e}: the hyper-reduced residual may amplify what the residual "
-          "basis misses by {:.0f}; take more samples or fewer residual modes",
-          gappy.smallest_singular_value, 1.0 / gappy.smallest_singular_value);
-      facts["warnings"].push_back(warning);
-      if (communicator_->getRank() == 0) fmt::print(stderr, "warning: {}\n", warning);
+  AtomicPath path(file, communicator_);
+  double aim = windows_.error.value_or(0.0);
+  if (windows_.error) costs_ = std::make_unique<WindowCosts>(snapshots_, *communicator_);
+  TrialErrors errors = attempt(path.temporary(), aim, report);
+  if (windows_.error) {
+    const double wanted = *windows_.error;
+    const auto reached = [this](const TrialErrors& trial) {
+      return trial_.queries.empty() ? trial.field : trial.worst_query;
+    };
+    for (int k = 1; k < most_attempts && (errors.diverged || reached(errors) > wanted); ++k) {
+      aim *= errors.diverged ? 0.3 : std::clamp(0.7 * wanted / reached(errors), 0.1, 0.7);
+      errors = attempt(path.temporary(), aim, report);
     }
-    const std::unique_ptr<Model> sample = sampled_or_masked(model_, sampled);
-    const std::vector<GlobalIndex> queries = nearest_particles(*model_, queried_positions(input_));
-    facts["queried"] = queries.size();
-    write_reduction(file, {input_, *model_, leading(initial_state(*model_), basis.modes.extent(0)), basis,
-                           residual_basis, gappy, *sample, sampled, queries});
-  });
+    if (!errors.diverged && reached(errors) > wanted) {
+      warn(fmt::format("windows with an error of {:.3g} % were asked for; the best of {} attempts has {:.3g} %: take "
+                       "more samples, residual modes or basis modes",
+                       100 * wanted, most_attempts, 100 * reached(errors)),
+           report);
+    }
+  }
+  if (errors.diverged) {
+    warn("the trial run of the reduction diverged: take more samples, fewer residual modes or shorter windows", report);
+  } else if (errors.capped_steps > 0) {
+    warn(fmt::format("{} steps of the trial run reached the cap of iterations", errors.capped_steps), report);
+  }
+  {
+    hdf5::File written = hdf5::File::modify(path.temporary(), communicator_);
+    written.attribute("trial", errors.facts().dump());
+    written.flush();
+  }
+  path.commit();
 }
 
 KILN_REGISTER(Trainer, ProcedureTwo, "procedure ii",

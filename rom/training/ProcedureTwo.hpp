@@ -8,17 +8,25 @@
 #include "framework/method/Trainer.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/time/NewtonSettings.hpp"
+#include "rom/files/Reduction.hpp"
 #include "rom/pod/Pod.hpp"
+#include "rom/training/TimeWindows.hpp"
+#include "rom/training/TrialRun.hpp"
 
 namespace kiln {
 
-/// Training by procedure II of GNAT (Carlberg et al. 2013; §3.3.1 of the report):
+/// Training by procedure II of GNAT (Carlberg et al. 2013; §3.3.1 of the report), in each of one or more time windows:
 ///
 ///   1. full-order run; snapshots u − u0
-///   2. their POD: the trial basis Φ
-///   3. LSPG without hyper-reduction over the same steps; the residual of every iteration is a snapshot
-///   4. their POD: Φ_r, for residual and Jacobian alike; sampling of particles
-///   5. A = [PΦ_r]⁺, the sample mesh, and the reduction file
+///   2. the windows, and in each the POD of u_n − u_begin: its trial basis Φ
+///   3. LSPG without hyper-reduction over the same steps; the residual of every iteration is a snapshot. Window by
+///      window, while it stands there: the residuals' POD Φ_r, for residual and Jacobian alike; sampling of particles;
+///      A = [PΦ_r]⁺ and the sample mesh
+///   4. the reduction file
+///   5. a trial run of what is in the file; its errors against the full-order run go into report and file
+///
+/// Where windows are asked for that hold an error, 2 to 5 are repeated with shorter windows until the trial run says
+/// so.
 class ProcedureTwo : public Trainer {
  public:
   static Specification specification();
@@ -27,12 +35,21 @@ class ProcedureTwo : public Trainer {
   void train(const std::filesystem::path& file, RunReport& report) override;
 
  private:
-  Snapshots run_full_order(RunReport& report);
-  Snapshots run_lspg(const Pod& basis, RunReport& report);
+  void run_full_order(RunReport& report);
+  /// Steps at which windows end, for windows that hold `error` where the input asks for that.
+  std::vector<int> window_ends(double error) const;
+  std::vector<Pod> window_bases(const std::vector<int>& ends, RunReport& report) const;
+  /// Marches LSPG through the windows and learns each one's sample mesh.
+  std::vector<WindowReduction> learn_windows(const std::vector<int>& ends, std::vector<Pod> bases, PetrovGalerkin& lspg,
+                                             RunReport& report);
+  WindowReduction learn_window(double end, Pod basis, Snapshots& residuals);
+  /// Bases of the windows on all rows.
+  std::unique_ptr<PetrovGalerkin> lspg_method(const std::vector<int>& ends, const std::vector<Pod>& bases) const;
+  /// One reduction, tried: the file is at `path` when it returns.
+  TrialErrors attempt(const std::string& path, double error, RunReport& report);
   /// Times a stage, shows it on rank 0, and puts its seconds into the report.
   void stage(const std::string& name, RunReport& report, const std::function<void()>& work);
-  /// Runs a method from its initial state through the input's time span.
-  LoopTotals march(Method& method, std::vector<Observer*> observers, const std::string& label);
+  void warn(const std::string& warning, RunReport& report) const;
 
   const Teuchos::ParameterList& input_;
   const Teuchos::ParameterList& block_;
@@ -41,7 +58,13 @@ class ProcedureTwo : public Trainer {
   TimeSpan span_;
   NewtonSettings newton_;
   PodSettings basis_settings_, residual_settings_;
+  WindowSettings windows_;
+  int every_;  ///< steps between two snapshots
   std::shared_ptr<Model> model_;
+  VectorView reference_;  ///< u_0 at the sources
+  Snapshots snapshots_;
+  std::unique_ptr<WindowCosts> costs_;  ///< where windows hold an error
+  TrialReference trial_;
 };
 
 }  // namespace kiln

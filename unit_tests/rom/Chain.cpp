@@ -231,6 +231,8 @@ Teuchos::ParameterList input_of(const Case& values) {
   sampling.set("type", std::string("greedy"));
   sampling.set("samples", values.samples);
   reduction.sublist("snapshots").set("every", 1);
+  if (values.windows > 0) reduction.sublist("windows").set("count", values.windows);
+  if (values.window_error > 0.0) reduction.sublist("windows").set("error", values.window_error);
   Teuchos::ParameterList& point = reduction.sublist("queries").sublist("0");
   point.set("position", Teuchos::Array<double>(Teuchos::tuple(1.0, 0.0, 0.0)));
   input.sublist("output").set("directory", values.folder);

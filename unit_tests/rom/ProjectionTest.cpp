@@ -10,7 +10,7 @@
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/model/MaskedModel.hpp"
-#include "rom/basis/AffineBasis.hpp"
+#include "rom/projection/FullSize.hpp"
 
 namespace kiln {
 namespace {
@@ -26,8 +26,8 @@ using test::world;
 std::unique_ptr<PetrovGalerkin> of_kind(const std::string& kind, const Case& values, int modes,
                                         const Teuchos::RCP<const Communicator>& communicator) {
   const std::shared_ptr<Model> model = model_of(values, communicator);
-  if (kind == "galerkin") return projection(model, values, modes, std::make_unique<GalerkinTestBasis>());
-  if (kind == "lspg") return projection(model, values, modes, std::make_unique<LspgTestBasis>());
+  if (kind == "galerkin") return projection(model, values, modes, test::galerkin_test);
+  if (kind == "lspg") return projection(model, values, modes, test::lspg_test);
   return test::gnat_projection(model, values, modes, values.count * values.components);
 }
 
@@ -256,14 +256,10 @@ TEST(Gnat, OnASampleMeshIsCloseToLspg) {
 TEST(PetrovGalerkin, StartsFromTheNearestStateWhereTheReferenceIsAnother) {
   Case values;
   const std::shared_ptr<Model> model = model_of(values, world());
-  const MatrixView modes = test::cosines(*model->rows(), 1, values.count, values.count);
-  VectorView reference("reference", modes.extent(0));
-  PetrovGalerkin::Parts parts{
-      model,
-      std::make_unique<AffineBasis>(VectorView("zero", model->sources()->getMyGlobalIndices().extent(0)),
-                                    test::cosines(*model->sources(), 1, values.count, values.count)),
-      std::make_unique<GalerkinTestBasis>(),
-      {model->rows(), model->positions(), std::make_unique<AffineBasis>(reference, modes)}};
+  const VectorView zero("zero", model->sources()->getMyGlobalIndices().extent(0));
+  PetrovGalerkin::Parts parts =
+      full_size_parts(model, {{1.0, 0, values.count}}, zero,
+                      test::cosines(*model->sources(), 1, values.count, values.count), test::galerkin_test);
   PetrovGalerkin method(std::move(parts), newton_of(values));
   VectorView x("x", values.count), u("u", method.row_size()),
       initial("u0", model->sources()->getMyGlobalIndices().extent(0));
@@ -278,19 +274,10 @@ TEST(PetrovGalerkin, LineSearchTakesTheSameSolution) {
   values.steps = 10;
   const std::vector<double> plain = march(*of_kind("lspg", values, 8, world()), values);
   const std::shared_ptr<Model> model = model_of(values, world());
-  VectorView reference("reference", model->sources()->getMyGlobalIndices().extent(0));
-  model->initial_state(reference);
   NewtonSettings settings = newton_of(values);
   settings.line_search = true;
-  PetrovGalerkin::Parts parts{
-      model,
-      std::make_unique<AffineBasis>(reference, test::cosines(*model->sources(), 1, values.count, 8)),
-      std::make_unique<LspgTestBasis>(),
-      {model->rows(), model->positions(),
-       std::make_unique<AffineBasis>(
-           VectorView(Kokkos::subview(reference,
-                                      std::make_pair(std::size_t(0), model->rows()->getMyGlobalIndices().extent(0)))),
-           test::cosines(*model->rows(), 1, values.count, 8))}};
+  PetrovGalerkin::Parts parts = test::parts_of(model, values, test::cosines(*model->sources(), 1, values.count, 8),
+                                               {{1.0, 0, 8}}, test::lspg_test);
   PetrovGalerkin method(std::move(parts), settings);
   EXPECT_LT(largest_difference(march(method, values), plain), 1e-10);
 }

@@ -5,17 +5,13 @@
 #include <limits>
 
 #include "framework/driver/TimeLoop.hpp"
-#include "rom/basis/AffineBasis.hpp"
+#include "rom/projection/FullSize.hpp"
 #include "rom/sampling/GappyOperator.hpp"
 
 namespace kiln::test {
 namespace {
 
 std::size_t local_count(const Map& map) { return map.getMyGlobalIndices().extent(0); }
-
-VectorView leading(const VectorView& values, std::size_t count) {
-  return Kokkos::subview(values, std::make_pair(std::size_t(0), count));
-}
 
 }  // namespace
 
@@ -41,27 +37,28 @@ NewtonSettings newton_of(const Case& values) {
   return NewtonSettings(input_of(values).sublist("time").sublist("newton"));
 }
 
-std::unique_ptr<PetrovGalerkin> projection(std::shared_ptr<Model> model, const Case& values, int modes,
-                                           std::unique_ptr<TestBasis> test) {
-  const int components = values.components, all = values.count * components;
-  VectorView reference("reference", local_count(*model->sources()) * components);
+PetrovGalerkin::Parts parts_of(const std::shared_ptr<Model>& model, const Case& values, const MatrixView& on_sources,
+                               const std::vector<TimeWindow>& windows,
+                               const std::function<std::unique_ptr<TestBasis>()>& test) {
+  VectorView reference("reference", local_count(*model->sources()) * values.components);
   model->initial_state(reference);
-  const std::size_t rows = local_count(*model->rows());
-  PetrovGalerkin::Parts parts;
-  parts.trial = std::make_unique<AffineBasis>(reference, cosines(*model->sources(), components, all, modes));
-  parts.test = std::move(test);
-  parts.held = {model->rows(), Kokkos::subview(model->positions(), std::make_pair(std::size_t(0), rows), Kokkos::ALL),
-                std::make_unique<AffineBasis>(leading(reference, rows * components),
-                                              cosines(*model->rows(), components, all, modes))};
-  parts.model = std::move(model);
-  return std::make_unique<PetrovGalerkin>(std::move(parts), newton_of(values));
+  return full_size_parts(model, windows, reference, on_sources, test);
 }
 
-std::unique_ptr<PetrovGalerkin> gnat_projection(std::shared_ptr<Model> model, const Case& values, int modes,
-                                                int residual_modes) {
+std::unique_ptr<PetrovGalerkin> projection(const std::shared_ptr<Model>& model, const Case& values, int modes,
+                                           const std::function<std::unique_ptr<TestBasis>()>& test) {
+  const MatrixView basis = cosines(*model->sources(), values.components, values.count * values.components, modes);
+  return std::make_unique<PetrovGalerkin>(
+      parts_of(model, values, basis, {{values.step * values.steps, 0, modes}}, test), newton_of(values));
+}
+
+std::unique_ptr<TestBasis> galerkin_test() { return std::make_unique<GalerkinTestBasis>(); }
+std::unique_ptr<TestBasis> lspg_test() { return std::make_unique<LspgTestBasis>(); }
+
+std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const Case& values, int residual_modes) {
   const int components = values.components, all = values.count * components;
   // PΦ_r of all ranks, in ascending order of ids, then this rank's columns of A.
-  const Map& rows = *model->rows();
+  const Map& rows = *model.rows();
   std::vector<double> marks(values.count, 0.0);
   for (std::size_t i = 0; i < local_count(rows); ++i) marks[rows.getGlobalElement(static_cast<LocalIndex>(i))] = 1.0;
   dense::sum_over_ranks(*rows.getComm(), marks.data(), marks.size());
@@ -78,7 +75,12 @@ std::unique_ptr<PetrovGalerkin> gnat_projection(std::shared_ptr<Model> model, co
       for (int k = 0; k < residual_modes; ++k) mine(k, i * components + c) = gappy.matrix(k, place * components + c);
     }
   }
-  return projection(std::move(model), values, modes, std::make_unique<GnatTestBasis>(mine));
+  return [mine] { return std::make_unique<GnatTestBasis>(mine); };
+}
+
+std::unique_ptr<PetrovGalerkin> gnat_projection(const std::shared_ptr<Model>& model, const Case& values, int modes,
+                                                int residual_modes) {
+  return projection(model, values, modes, gnat_test(*model, values, residual_modes));
 }
 
 std::vector<double> gathered_state(const Method& method, ConstVectorView x) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
+
 #include "Chain.hpp"
 #include "framework/method/FullOrder.hpp"
 #include "framework/time/TimeScheme.hpp"
+#include "rom/basis/TimeWindow.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
 
 namespace kiln::test {
@@ -14,11 +17,19 @@ MatrixView cosines(const Map& map, int components, int all_entries, int modes);
 std::shared_ptr<Model> model_of(const Case& values, const Teuchos::RCP<const Communicator>& communicator);
 NewtonSettings newton_of(const Case& values);
 
-/// A projection of `model` on the first M cosines about the model's initial state.
-std::unique_ptr<PetrovGalerkin> projection(std::shared_ptr<Model> model, const Case& values, int modes,
-                                           std::unique_ptr<TestBasis> test);
-/// The same with GNAT's test basis, whose residual modes are the first n_r cosines. `model` may be sampled.
-std::unique_ptr<PetrovGalerkin> gnat_projection(std::shared_ptr<Model> model, const Case& values, int modes,
+std::unique_ptr<TestBasis> galerkin_test();
+std::unique_ptr<TestBasis> lspg_test();
+/// GNAT's test basis on a model's rows, whose residual modes are the first n_r cosines.
+std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const Case& values, int residual_modes);
+
+/// Projections of `model`, which may be sampled, about its initial state; `on_sources`: the modes of all windows.
+PetrovGalerkin::Parts parts_of(const std::shared_ptr<Model>& model, const Case& values, const MatrixView& on_sources,
+                               const std::vector<TimeWindow>& windows,
+                               const std::function<std::unique_ptr<TestBasis>()>& test);
+/// One on the first M cosines.
+std::unique_ptr<PetrovGalerkin> projection(const std::shared_ptr<Model>& model, const Case& values, int modes,
+                                           const std::function<std::unique_ptr<TestBasis>()>& test);
+std::unique_ptr<PetrovGalerkin> gnat_projection(const std::shared_ptr<Model>& model, const Case& values, int modes,
                                                 int residual_modes);
 
 /// Marches through the case's steps and returns the state of all the method's particles at the end, by id, on every

@@ -115,24 +115,26 @@ TEST(Training, WritesASelfContainedFile) {
   EXPECT_EQ(file.group("time").real("step"), values.step);
   const hdf5::Group window = file.group("windows").group("0");
   EXPECT_EQ(window.group("basis").shape("modes"), (std::vector<std::size_t>{60, 10}));
-  EXPECT_EQ(window.group("basis").shape("reference"), (std::vector<std::size_t>{60, 1}));
+  EXPECT_EQ(window.real("end"), values.step * values.steps);
+  EXPECT_EQ(file.shape("reference"), (std::vector<std::size_t>{60, 1}));
   EXPECT_EQ(window.group("basis").shape("singular_values"), (std::vector<std::size_t>{40}));
   const hdf5::Group mesh = window.group("sample_mesh");
   EXPECT_EQ(mesh.shape("rows"), (std::vector<std::size_t>{24}));
   EXPECT_EQ(mesh.shape("gappy_operator"), (std::vector<std::size_t>{12, 24}));
   EXPECT_GT(mesh.real("sigma_min"), 0.0);
-  EXPECT_EQ(window.group("queries").integers("particles").values, (std::vector<long long>{29, 59}));
-  // The basis rows at the sources are those of the full basis.
-  const std::vector<long long> sources = mesh.integers("sources").values;
-  const hdf5::Array<double> all = window.group("basis").reals("modes"), some = mesh.reals("modes");
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    for (int k = 0; k < 10; ++k) EXPECT_EQ(some.values[i * 10 + k], all.values[sources[i] * 10 + k]);
+  const hdf5::Group particles = file.group("particles");
+  EXPECT_EQ(particles.integers("queries").values, (std::vector<long long>{29, 59}));
+  // The basis rows at the particles held are those of the full basis.
+  const std::vector<long long> held = particles.integers("ids").values;
+  const hdf5::Array<double> all = window.group("basis").reals("modes"), some = particles.reals("modes");
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    for (int k = 0; k < 10; ++k) EXPECT_EQ(some.values[i * 10 + k], all.values[held[i] * 10 + k]);
   }
   const nlohmann::json& facts = report.section("training");
   EXPECT_EQ(facts["stages"].size(), 5u);
-  EXPECT_EQ(facts["basis"]["rank"], 10);
+  EXPECT_EQ(facts["basis"][0]["rank"], 10);
   EXPECT_EQ(facts["lspg"]["residual_snapshots"], facts["lspg"]["residuals"]);
-  EXPECT_EQ(facts["sampled"], 24);
+  EXPECT_EQ(facts["sample_meshes"][0]["sampled"], 24);
 }
 
 TEST(Training, AllRowsAndACompleteResidualBasisMakeGnatLspg) {
@@ -191,7 +193,7 @@ TEST(Gnat, HoldsEachSourceAndQueriedParticleOnce) {
   const hdf5::File file = hdf5::File::read(values.folder + "/reduction.h5", world());
   const hdf5::Group window = file.group("windows").group("0");
   std::vector<long long> ids = window.group("sample_mesh").integers("sources").values;
-  for (const long long query : window.group("queries").integers("particles").values) ids.push_back(query);
+  for (const long long query : file.group("particles").integers("queries").values) ids.push_back(query);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   EXPECT_EQ(gnat->particles()->getGlobalNumElements(), ids.size());

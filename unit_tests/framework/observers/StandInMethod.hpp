@@ -53,9 +53,19 @@ class StandInMethod : public Method {
   ConstPositionView positions() const override { return positions_; }
   std::vector<Field> fields() const override { return {{"temperature", "K"}, {"phase", "1"}}; }
   void state(ConstVectorView x, VectorView u) const override { Kokkos::deep_copy(u, x); }
+  Reader reader(const std::vector<LocalIndex>& places) const override {
+    return [this, places](ConstVectorView x, VectorView u) {
+      const VectorView all("kiln::test::state", 2 * ids_.size());
+      state(x, all);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        for (int c = 0; c < 2; ++c) u(2 * i + c) = all(2 * places[i] + c);
+      }
+    };
+  }
   void report(nlohmann::json&) const override {}
 
   Teuchos::RCP<const Map> coordinates() const override { return degree_of_freedom_map(map_, 2); }
+  bool begin_step(double) override { throw NotOffered("StandInMethod", "begin_step"); }
   LocalIndex row_size() const override { throw NotOffered("StandInMethod", "row_size"); }
   void initial(VectorView) const override { throw NotOffered("StandInMethod", "initial"); }
   void evaluate(ConstVectorView, double, VectorView, VectorView) override {

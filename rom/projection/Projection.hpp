@@ -1,0 +1,112 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "framework/model/Model.hpp"
+#include "framework/time/JacobianAction.hpp"
+#include "framework/time/NewtonSettings.hpp"
+#include "framework/time/StepResidual.hpp"
+#include "rom/basis/TrialSpace.hpp"
+#include "rom/linear_algebra/Dense.hpp"
+#include "rom/projection/TestBasis.hpp"
+
+namespace kiln {
+
+namespace hdf5 {
+class Group;
+}
+
+/// The reduced equations of one time window: its coordinates û in a trial space g, found from
+///
+///     Ψᵀ r(g(û)) = 0,   by û ← û − (Ψᵀ J̃Φ)⁻¹ Ψᵀ r,   J̃Φ = (α0 I − γ ∂f/∂u) ∂g/∂û at the model's rows,
+///
+/// with Ψ a TestBasis: Galerkin, LSPG (Alg. 1 without hyper-reduction) or GNAT (Alg. 1). The model may be the full one
+/// or a sampled one. Every rank holds all of û, computes the state of its sources from it and adds up one vector of M
+/// numbers an iteration; nothing else is communicated. J̃Φ, Ψ and the factors of Ψᵀ J̃Φ are kept for `refresh` steps;
+/// with them kept, an iteration allocates nothing.
+///
+/// Convergence: ‖Ψᵀr‖₂ relative to its first value of the step (Alg. 1, line 10).
+///
+/// All x are coordinates of all time windows, of which a projection changes its own.
+class Projection {
+ public:
+  struct Parts {
+    std::shared_ptr<Model> model;
+    std::unique_ptr<TrialSpace> trial;  ///< on the model's sources
+    std::unique_ptr<TestBasis> test;    ///< on its rows
+  };
+
+  Projection(Parts parts, const NewtonSettings& settings);
+
+  Model& model() const { return *model_; }
+  const TrialSpace& trial() const { return *trial_; }
+  LocalIndex row_size() const { return row_size_; }
+  /// û whose state is nearest to the model's initial one at the rows; exactly 0 where that is the reference state.
+  void initial(VectorView x) const;
+
+  /// As the functions of Method.
+  void evaluate(ConstVectorView x, double time, VectorView u, VectorView f);
+  /// dû/dt = (Ψ0ᵀΦ)⁻¹ Ψ0ᵀ f, where Ψ0 is the test basis for J̃ = I; zero for the coordinates of other windows.
+  int rate(ConstVectorView x, double time, VectorView dxdt);
+  SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f);
+
+  /// The next step takes J̃Φ anew.
+  void forget_jacobian() { frozen_.age = -1; }
+  long long linearisations() const { return linearisations_; }
+  double reciprocal_condition() const { return reciprocal_condition_; }
+
+  /// The point J̃Φ was taken at. `x_size`: length of x.
+  void save(hdf5::Group& group) const;
+  void restore(const hdf5::Group& group, std::size_t x_size);
+
+  /// Called with the residual at the rows, rows × components, of every iteration, and with the rate of every explicit
+  /// stage: how residual snapshots are taken.
+  void observe_residuals(std::function<void(ConstVectorView)> observer) { observer_ = std::move(observer); }
+
+ private:
+  void linearise(double alpha, double gamma, ConstVectorView x, double time);
+  bool linearised_for(double alpha, double gamma) const;
+  /// Evaluates state and rate for x; f: rows × components. Fills residual_ and g_ = Ψᵀr; returns ‖g_‖.
+  double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
+  void project(ConstVectorView rows, VectorView g);
+  /// û ← û + scale · step_.
+  void move(VectorView x, double scale) const;
+  /// The step of an explicit scheme in an affine trial space, linear in û: one update, one evaluation of f.
+  SolveReport solve_explicit(const StepResidual& residual, VectorView x, VectorView u, VectorView f);
+  /// Halves the update until ‖Ψᵀr‖ falls below `norm`; x already holds x − step_. Returns the new norm.
+  double search_line(const StepResidual& residual, VectorView x, VectorView f, double norm, double next,
+                     SolveReport& report);
+  [[noreturn]] void throw_diverged(const std::string& what, double time, ConstVectorView f,
+                                   ConstVectorView measure) const;
+
+  std::shared_ptr<Model> model_;
+  std::unique_ptr<TrialSpace> trial_;
+  std::unique_ptr<TestBasis> test_basis_;
+  NewtonSettings settings_;
+  Teuchos::RCP<const Communicator> communicator_;
+  LocalIndex row_size_;
+  int first_, size_;
+  JacobianAction jacobian_;
+  std::function<void(ConstVectorView)> observer_;
+
+  /// The point J̃Φ was taken at; a restart takes it there again.
+  struct Frozen {
+    VectorView x;
+    double alpha = 0.0, gamma = 0.0, time = 0.0;
+    int age = -1;  ///< steps it has served; −1: not taken yet
+  } frozen_;
+  MatrixView jacobian_tangent_;  ///< J̃Φ
+  MatrixView small_;             ///< Ψᵀ J̃Φ, overwritten by its factors
+  ConstMatrixView test_;         ///< Ψ
+  dense::LuFactors factors_;
+  double reciprocal_condition_ = 1.0;
+  long long linearisations_ = 0;
+
+  VectorView state_;               ///< sources × components
+  VectorView rate_, residual_;     ///< rows × components
+  VectorView g_, local_g_, step_;  ///< M
+};
+
+}  // namespace kiln
