@@ -105,7 +105,7 @@ class Expansion {
 
   void check_name(const std::string& name, const std::string& place) {
     const std::filesystem::path path(name);
-    const bool leaves = path.is_absolute() || path.lexically_normal() != path || *path.begin() == "..";
+    const bool leaves = path.is_absolute() || path.lexically_normal().string() != name || *path.begin() == "..";
     if (leaves || !path.has_filename() || path == ".") {
       refuse(
           {place, fmt::format("{} is no folder below `output`", in_quotes(name)), "a name such as part/gnat-1e-3", {}});

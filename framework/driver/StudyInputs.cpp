@@ -44,10 +44,7 @@ StudyInputs::StudyInputs(const Input& study, const std::vector<StudyCase>& cases
       version_(provenance(*communicator_).at("kiln")) {
   std::vector<Problem> problems;
   for (std::size_t i = 0; i < cases_.size(); ++i) {
-    // A case whose own input is wrong promises nothing, and those that need it are not to be blamed for that.
     inputs_.emplace_back();
-    const bool needs_wrong = cases_[i].needs && inputs_[*cases_[i].needs].file().empty();
-    if (needs_wrong) continue;
     try {
       inputs_[i] =
           Input::read(cases_[i].input, cases_[i].all_overrides(), run_specification(), *communicator_, promised(i));
@@ -144,13 +141,17 @@ nlohmann::json StudyInputs::identity(std::size_t index, const std::string& neede
 }
 
 std::filesystem::path StudyInputs::report_folder(std::size_t index) const {
-  const Teuchos::ParameterList& list = inputs_[index].list();
-  return is_training(cases_[index]) ? training_folder(list) : run_folder(list);
+  Teuchos::ParameterList list = inputs_[index].list();
+  // So that a case can be asked whose own input is wrong.
+  list.sublist("output").set("directory", cases_[index].folder.string());
+  if (is_training(cases_[index])) return training_folder(list);
+  return list.isSublist("method") ? run_folder(list) : cases_[index].folder;
 }
 
 std::vector<std::filesystem::path> StudyInputs::results(std::size_t index) const {
-  const Teuchos::ParameterList& list = inputs_[index].list();
+  Teuchos::ParameterList list = inputs_[index].list();
   std::vector<std::filesystem::path> files = {report_folder(index) / "report.json"};
+  list.sublist("output").set("directory", cases_[index].folder.string());
   if (is_training(cases_[index])) {
     files.push_back(reduction_file(list));
   } else if (list.sublist("output").isSublist("fields")) {

@@ -91,12 +91,13 @@ TEST_F(StudyCasesTest, AllMistakesAreToldOnceAtTheirPlaces) {
                      "    input: '{y}.yaml'\n"
                      "    set: {output.directory: b, m.t: '{xx}'}\n"
                      "  - {name: a-1, input: i.yaml, needs: a-3}\n"),
-            "study.yaml:5:12: cases.0.input: {y} in '{y}.yaml' has no value; expected one of: x\n"
+            "study.yaml:5:12: cases.0.input: {y} in '{y}.yaml' has no value; expected one of: x; did you "
+            "mean 'x'?\n"
             "study.yaml:6:29: cases.0.set.output.directory: the study sets the case's folder itself; expected the "
             "case's `name`\n"
             "study.yaml:6:37: cases.0.set.m.t: {xx} in '{xx}' has no value; expected one of: x; did you mean 'x'?\n"
             "study.yaml:7:12: cases.1.name: another case is named 'a-1'; expected a name of its own for each case\n"
-            "study.yaml:7:38: cases.1.needs: no case before this one is named 'a-3'; expected the name of a case "
+            "study.yaml:7:39: cases.1.needs: no case before this one is named 'a-3'; expected the name of a case "
             "further up in the file; did you mean 'a-1'?");
 }
 

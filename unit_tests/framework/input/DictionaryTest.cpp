@@ -35,7 +35,7 @@ TEST_F(DictionaryTest, KeepsTextsAndListsInTheirOrder) {
   EXPECT_EQ(set.get<std::string>("z.b"), "1e-3");
   EXPECT_EQ(set.get<Teuchos::Array<std::string>>("a").toVector(), (std::vector<std::string>{"x", "2 mm"}));
   EXPECT_EQ(set.get<std::string>("m"), "{power}");
-  EXPECT_EQ(to_string(input.location("set.a")), "run.yaml:1:22");
+  EXPECT_EQ(to_string(input.location("set.a")), "run.yaml:1:21");
 }
 
 TEST_F(DictionaryTest, IsReadBackFromTheMergedInput) {
