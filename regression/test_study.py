@@ -108,8 +108,8 @@ class StudyTest(KilnTest):
         # On another number of ranks nothing is the same to the bit.
         self.assertEqual(self.listed(STUDY), ["to do"] * 7)
 
-    def kill_during(self, file, checkpoint, ranks):
-        """Starts the study and kills its processes once that checkpoint stands there."""
+    def kill_when(self, reached, file, ranks=1):
+        """Starts the study and kills its processes once that is so."""
         process = subprocess.Popen(
             self.command("study", file, ranks=ranks),
             cwd=self.folder,
@@ -118,9 +118,9 @@ class StudyTest(KilnTest):
             stderr=subprocess.DEVNULL,
         )
         deadline = time.monotonic() + 30.0
-        while not checkpoint.exists():
+        while not reached():
             self.assertIsNone(process.poll(), "the study ended before it could be killed")
-            self.assertLess(time.monotonic(), deadline, "no checkpoint came")
+            self.assertLess(time.monotonic(), deadline, "the moment to kill it did not come")
             time.sleep(0.001)
         children = f"/proc/{process.pid}/task/{process.pid}/children"
         with open(children, encoding="ascii") as list_of_ranks:
@@ -131,7 +131,7 @@ class StudyTest(KilnTest):
     def check_interruption(self, ranks):
         file = self.write(("first", "run", {}), ("long", "run", LONG), ("last", "run", {"method.type": "fom"}))
         long = self.folder / "study/long/fom"
-        self.kill_during(file, long / "checkpoint.h5", ranks)
+        self.kill_when((long / "checkpoint.h5").exists, file, ranks)
         self.assertFalse((long / "report.json").exists())
         self.assertFalse((self.folder / "study/last").exists())
         self.assertEqual(self.listed(file, ranks=ranks), ["complete", "interrupted", "to do"])
@@ -153,10 +153,16 @@ class StudyTest(KilnTest):
 
     def test_interrupted_case_of_another_input_starts_anew(self):
         file = self.write(("long", "run", LONG))
-        self.kill_during(file, self.folder / "study/long/fom/checkpoint.h5", 1)
+        checkpoint = self.folder / "study/long/fom/checkpoint.h5"
+        self.kill_when(checkpoint.exists, file)
         # The checkpoint's model, time and method are the same, so that it alone could not tell.
-        file = self.write(("long", "run", LONG | {"output.fields.every": "20"}))
+        file = self.write(("long", "run", LONG | {"output.checkpoint.every": "1000"}))
         self.assertIn("to do        long  changed: input", self.kiln("study", file, "--list").stdout)
+        record = self.folder / "study/long/case.json"
+        first = json.loads(record.read_text())
+        self.kill_when(lambda: json.loads(record.read_text())["identity"] != first["identity"], file)
+        # Nor is it taken for one of the second start, which was killed before its own.
+        self.assertEqual(self.listed(file), ["interrupted"])
         self.study(file)
         self.assertEqual(self.table()["continued"].to_dict(), {"long": False})
         report = json.loads((self.folder / "study/long/fom/report.json").read_text())
