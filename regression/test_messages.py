@@ -51,7 +51,7 @@ class MessagesTest(KilnTest):
         self.wrong(lines=2, words=("A subcommand is required", "--help"), ranks=(1, 2))
 
     def test_unknown_command(self):
-        self.wrong("frobnicate", lines=2, words=("no command 'frobnicate'", "run, train, check", "--help"))
+        self.wrong("frobnicate", lines=2, words=("no command 'frobnicate'", "run, train, study, check", "--help"))
 
     def test_misspelt_command(self):
         self.wrong("tran", SMALL, lines=2, words=("no command 'tran'", "did you mean 'train'?"))

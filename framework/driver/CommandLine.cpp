@@ -15,6 +15,8 @@
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
+#include "framework/driver/Study.hpp"
+#include "framework/driver/StudySpecification.hpp"
 #include "framework/files/Compare.hpp"
 #include "framework/registry/Describe.hpp"
 #include "framework/registry/Nearest.hpp"
@@ -60,8 +62,22 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& error) {
       .what();
 }
 
-/// `kiln describe input` and `kiln template input` mean the whole file.
-constexpr const char* whole_input = "input";
+/// A whole file, which `kiln describe` and `kiln template` know by a name of its own.
+struct WholeFile {
+  const char* name;
+  const char* title;
+  Specification (*specification)();
+};
+constexpr WholeFile whole_files[] = {{"input", "input file", run_specification},
+                                     {"study", "study file", study_specification}};
+
+/// nullptr: a component is meant.
+const WholeFile* whole_file(const std::string& name) {
+  for (const WholeFile& file : whole_files) {
+    if (name == file.name) return &file;
+  }
+  return nullptr;
+}
 
 }  // namespace
 
@@ -71,7 +87,8 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   app.require_subcommand(1);
   app.set_version_flag("--version", version_line());
   app.footer(
-      "Exit status: 0 done, 1 a comparison differs or an unforeseen error, 2 bad input or data file, 3 the solve "
+      "Exit status: 0 done, 1 a comparison differs, a case of a study failed or an unforeseen error, 2 bad input or "
+      "data file, 3 the solve "
       "diverged.\nRun the computing commands on R ranks with mpirun -n R kiln …");
 
   CommandOptions options;
@@ -101,6 +118,27 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
     };
   });
 
+  StudyOptions study_options;
+  bool list_only = false;
+  CLI::App* study_app = app.add_subcommand("study", "Run a matrix of cases; keeps what is complete, resumes the rest");
+  study_app->add_option("FILE", study_options.file, "study file (YAML)")->required();
+  study_app
+      ->add_option("--set", study_options.overrides, "change one entry of the study file, e.g. --set output=results")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  study_app->add_option("--only", study_options.only, "these cases and what they need, e.g. --only 'part/gnat-*'")
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
+  study_app->add_flag("--list", list_only, "print the cases with their states; run nothing");
+  study_app->add_flag("--quiet", study_options.quiet, "no progress; failures are told nonetheless");
+  study_app->callback([&] {
+    command = [&]() -> int {
+      if (!list_only) return study(study_options, communicator);
+      print(*communicator, list_study(study_options, communicator));
+      return exit_success;
+    };
+  });
+
   CLI::App* check_app = app.add_subcommand("check", "Check an input without running it; prints it with all defaults");
   add_input_options(check_app, options);
   check_app->callback([&] {
@@ -118,21 +156,25 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   });
 
   CLI::App* describe_app = app.add_subcommand("describe", "Explain a component and its keys");
-  describe_app->add_option("NAME", name, "a component or a category of `kiln list`, or 'input' for the whole file")
+  describe_app
+      ->add_option("NAME", name, "a component or a category of `kiln list`; 'input' or 'study' for a whole file")
       ->required();
   describe_app->callback([&] {
     command = [&]() -> int {
-      print(*communicator,
-            name == whole_input ? describe(run_specification(), "Keys of an input file") : describe(name));
+      const WholeFile* file = whole_file(name);
+      print(*communicator, file == nullptr
+                               ? describe(name)
+                               : describe(file->specification(), fmt::format("Keys of the {}", file->title)));
       return exit_success;
     };
   });
 
   CLI::App* template_app = app.add_subcommand("template", "Print a commented YAML block to start from");
-  template_app->add_option("NAME", name, "a component of `kiln list`, or 'input' for the whole file")->required();
+  template_app->add_option("NAME", name, "a component of `kiln list`; 'input' or 'study' for a whole file")->required();
   template_app->callback([&] {
     command = [&]() -> int {
-      print(*communicator, name == whole_input ? template_of(run_specification(), "Input file") : template_of(name));
+      const WholeFile* file = whole_file(name);
+      print(*communicator, file == nullptr ? template_of(name) : template_of(file->specification(), file->title));
       return exit_success;
     };
   });

@@ -14,12 +14,7 @@
 namespace kiln {
 namespace {
 
-struct Outcome {
-  int status;
-  std::string message;
-};
-
-Outcome outcome_of(std::exception_ptr failure) {
+FailureOutcome outcome_of(std::exception_ptr failure) {
   try {
     std::rethrow_exception(failure);
   } catch (const InputError& error) {
@@ -53,8 +48,8 @@ bool all_ranks_failed(MPI_Comm communicator) {
 
 }  // namespace
 
-int report_failure(std::exception_ptr failure, const Communicator& communicator) {
-  const Outcome outcome = outcome_of(failure);
+FailureOutcome settle_failure(std::exception_ptr failure, const Communicator& communicator) {
+  FailureOutcome outcome = outcome_of(failure);
   const auto* mpi = dynamic_cast<const Teuchos::MpiComm<int>*>(&communicator);
   const bool together = mpi == nullptr || communicator.getSize() == 1 || all_ranks_failed(*mpi->getRawMpiComm());
   if (!together) {
@@ -62,6 +57,11 @@ int report_failure(std::exception_ptr failure, const Communicator& communicator)
     std::fflush(stderr);
     MPI_Abort(*mpi->getRawMpiComm(), outcome.status);
   }
+  return outcome;
+}
+
+int report_failure(std::exception_ptr failure, const Communicator& communicator) {
+  const FailureOutcome outcome = settle_failure(failure, communicator);
   if (communicator.getRank() == 0) std::fprintf(stderr, "%s\n", outcome.message.c_str());
   return outcome.status;
 }

@@ -178,12 +178,17 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace
+std::unique_ptr<Trainer> make_trainer(const Input& input, bool quiet, const Comm& communicator) {
+  const Teuchos::ParameterList& list = input.list();
+  if (!list.isSublist("reduction")) {
+    throw InputError("", "the input has no block 'reduction'",
+                     "a block that says how to train, e.g. reduction: {type: procedure ii, …}");
+  }
+  return Registry<Trainer>::create(list.sublist("reduction"), {list, communicator, quiet});
+}
 
-void run(const CommandOptions& options, const Comm& communicator) {
-  const Stopwatch total;
+void run_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {
   const Timers timers("kiln");
-  const Input input = read_input(options, communicator);
   const Teuchos::ParameterList& list = input.list();
   const RunFolder folder(run_folder(list), *communicator);
 
@@ -227,25 +232,10 @@ void run(const CommandOptions& options, const Comm& communicator) {
   if (failure != nullptr) std::rethrow_exception(failure);
 }
 
-void check(const CommandOptions& options, const Comm& communicator) {
-  const Input input = read_input(options, communicator);
-  const TemporaryFolder folder(*communicator);
-  located(input, [&] { return std::make_unique<Assembly>(input, folder.path(), communicator, false); });
-  if (communicator->getRank() == 0) {
-    std::fputs(input.merged().c_str(), stdout);
-    std::fflush(stdout);
-  }
-}
-
-void train(const CommandOptions& options, const Comm& communicator) {
-  const Stopwatch total;
+void train_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {
   const Timers timers("kiln");
-  const Input input = read_input(options, communicator);
   const Teuchos::ParameterList& list = input.list();
-  if (!list.isSublist("reduction")) {
-    throw input.located(InputError("", "the input has no block 'reduction'",
-                                   "a block that says how to train, e.g. reduction: {type: procedure ii, …}"));
-  }
+  const auto trainer = located(input, [&] { return make_trainer(input, options.quiet, communicator); });
   const RunFolder folder(training_folder(list), *communicator);
   RunReport report;
   report.section("run") = {{"title", list.get<std::string>("title")},
@@ -254,7 +244,6 @@ void train(const CommandOptions& options, const Comm& communicator) {
                            {"status", "complete"}};
   report.section("provenance") = provenance(*communicator);
   located(input, [&] {
-    auto trainer = Registry<Trainer>::create(list.sublist("reduction"), {list, communicator, options.quiet});
     trainer->train(reduction_file(list), report);
     return 0;
   });
@@ -263,6 +252,43 @@ void train(const CommandOptions& options, const Comm& communicator) {
   report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
   report.section("timers")["table"] = timers.table(communicator);
   write_report(report, folder.path(), communicator, options.quiet);
+}
+
+}  // namespace
+
+void run(const CommandOptions& options, const Comm& communicator) {
+  const Stopwatch total;
+  run_timed(total, read_input(options, communicator), options, communicator);
+}
+
+void run(const Input& input, const CommandOptions& options, const Comm& communicator) {
+  run_timed(Stopwatch(), input, options, communicator);
+}
+
+void train(const CommandOptions& options, const Comm& communicator) {
+  const Stopwatch total;
+  train_timed(total, read_input(options, communicator), options, communicator);
+}
+
+void train(const Input& input, const CommandOptions& options, const Comm& communicator) {
+  train_timed(Stopwatch(), input, options, communicator);
+}
+
+void build(const Input& input, bool trains, const Comm& communicator) {
+  const TemporaryFolder folder(*communicator);
+  located(input, [&] {
+    if (trains) make_trainer(input, true, communicator);
+    return std::make_unique<Assembly>(input, folder.path(), communicator, false);
+  });
+}
+
+void check(const CommandOptions& options, const Comm& communicator) {
+  const Input input = read_input(options, communicator);
+  build(input, false, communicator);
+  if (communicator->getRank() == 0) {
+    std::fputs(input.merged().c_str(), stdout);
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace kiln

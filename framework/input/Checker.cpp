@@ -188,6 +188,9 @@ void Checker::check_entry(const YamlNode& value, const Entry& entry, const std::
     case Kind::components:
       check_list(value, entry, path, list);
       return;
+    case Kind::dictionary:
+      check_dictionary(value, entry, path, list);
+      return;
     default:
       if (value.kind == YamlNode::Kind::list) {
         for (std::size_t i = 0; i < value.items.size(); ++i) {
@@ -195,6 +198,30 @@ void Checker::check_entry(const YamlNode& value, const Entry& entry, const std::
         }
       }
       values_.read(value, entry, path, list);
+  }
+}
+
+void Checker::check_dictionary(const YamlNode& value, const Entry& entry, const std::string& path,
+                               Teuchos::ParameterList& list) {
+  if (value.kind != YamlNode::Kind::map && value.kind != YamlNode::Kind::null) {
+    mistakes_.add(value.location, {path, what_is_given(value), expectation(entry), {}});
+    return;
+  }
+  Teuchos::ParameterList& sublist = add_sublist(list, entry.key, path);
+  for (const YamlPair& pair : value.pairs) {
+    const std::string pair_path = join(path, pair.key);
+    locations_[pair_path] = pair.value.location;
+    Entry item;
+    item.key = pair.key;
+    item.kind = pair.value.kind == YamlNode::Kind::list ? Kind::texts : Kind::text;
+    if (pair.value.kind == YamlNode::Kind::map || pair.value.kind == YamlNode::Kind::null) {
+      // YAML reads {word} without quotes as a block with the key `word`.
+      const bool braces = pair.value.pairs.size() == 1 && pair.value.pairs[0].value.kind == YamlNode::Kind::null;
+      mistakes_.add(pair.value.location, {pair_path, what_is_given(pair.value), "a text or a list of texts",
+                                          braces ? fmt::format("\"{{{}}}\"", pair.value.pairs[0].key) : ""});
+    } else {
+      check_entry(pair.value, item, pair_path, sublist);
+    }
   }
 }
 

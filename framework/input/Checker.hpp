@@ -34,6 +34,8 @@ class Checker {
                       const Teuchos::ParameterList& list);
   void check_entry(const YamlNode& value, const Entry& entry, const std::string& path, Teuchos::ParameterList& list);
   void check_missing(const YamlNode& block, const Entry& entry, const std::string& path, Teuchos::ParameterList& list);
+  void check_dictionary(const YamlNode& value, const Entry& entry, const std::string& path,
+                        Teuchos::ParameterList& list);
   void check_list(const YamlNode& value, const Entry& entry, const std::string& path, Teuchos::ParameterList& list);
   /// `fallback`: the type of a block that names none; empty: it must.
   void check_component(const YamlNode& value, const Entry& entry, const std::string& fallback, const std::string& path,

@@ -15,6 +15,7 @@ namespace {
 struct Checked {
   Teuchos::ParameterList list;
   std::map<std::string, Location> locations;
+  std::vector<std::string> data_files;
 };
 
 /// A pure function of what `files` answers, so that every rank comes to the same end.
@@ -30,16 +31,19 @@ Checked check(const std::string& file, const std::vector<std::string>& overrides
   checker.check(root, specification, checked.list);
   if (mistakes.count() != 0) throw mistakes.error();
   checked.locations = checker.locations();
+  checked.data_files = files.data_files();
   return checked;
 }
 
 }  // namespace
 
 Input Input::read(const std::string& file, const std::vector<std::string>& overrides,
-                  const Specification& specification, const Communicator& communicator) {
+                  const Specification& specification, const Communicator& communicator,
+                  const std::vector<std::string>& promised) {
   std::optional<Checked> checked;
   if (communicator.getRank() == 0) {
     InputFiles files;
+    for (const std::string& path : promised) files.promise(path);
     std::exception_ptr failure;
     try {
       checked = check(file, overrides, specification, files);
@@ -58,6 +62,7 @@ Input Input::read(const std::string& file, const std::vector<std::string>& overr
   input.list_ = std::move(checked->list);
   input.list_.setName("");
   input.locations_ = std::move(checked->locations);
+  input.data_files_ = std::move(checked->data_files);
   return input;
 }
 

@@ -19,11 +19,15 @@ class Input {
  public:
   /// Reads the file once, on rank 0. `overrides` are "path.to.key=value" texts that go through the same checks.
   /// Throws InputError with all mistakes of the file at once; their text already has file:line:column in front.
+  /// `promised` are absolute paths of data files that may still be missing.
   static Input read(const std::string& file, const std::vector<std::string>& overrides,
-                    const Specification& specification, const Communicator& communicator);
+                    const Specification& specification, const Communicator& communicator,
+                    const std::vector<std::string>& promised = {});
 
   const Teuchos::ParameterList& list() const { return list_; }
   const std::string& file() const { return file_; }
+  /// Absolute paths of the data files the input names, and of those promised.
+  const std::vector<std::string>& data_files() const { return data_files_; }
   /// Where the entry stands, or its nearest enclosing block.
   Location location(const std::string& path) const;
   /// Puts "file:line:column: " before each problem: for mistakes that components find while they are built.
@@ -35,6 +39,7 @@ class Input {
   std::string file_;
   Teuchos::ParameterList list_;
   std::map<std::string, Location> locations_;
+  std::vector<std::string> data_files_;
 };
 
 /// The checked block as YAML text, keys in their order; used for hashes and comparisons.

@@ -88,6 +88,12 @@ const InputFiles::Contents& InputFiles::read(const std::string& path) {
   return contents_[path] = contents(path);
 }
 
+std::vector<std::string> InputFiles::data_files() const {
+  std::vector<std::string> paths;
+  for (const auto& [path, trouble] : troubles_) paths.push_back(path);
+  return paths;
+}
+
 const std::string& InputFiles::trouble(const std::string& path) {
   const auto known = troubles_.find(path);
   if (known != troubles_.end()) return known->second;

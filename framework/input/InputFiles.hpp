@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace kiln {
 
@@ -27,6 +28,10 @@ class InputFiles {
   std::string absolute(const std::filesystem::path& path) const;
   /// `path` is absolute.
   const Contents& read(const std::string& path);
+  /// A file that is not there yet but will be when it is wanted. `path` is absolute. Rank 0 alone.
+  void promise(const std::string& path) { troubles_[path].clear(); }
+  /// All files that were asked for by trouble(), absolute.
+  std::vector<std::string> data_files() const;
   /// Why the file cannot be opened; empty: it can. `path` is absolute.
   const std::string& trouble(const std::string& path);
 

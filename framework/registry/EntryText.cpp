@@ -95,6 +95,8 @@ std::string expectation(const Entry& entry) {
     case Kind::integers:
     case Kind::texts:
       return list_expectation(entry);
+    case Kind::dictionary:
+      return "a block of keys, each with a text or a list of texts";
     case Kind::section:
       return fmt::format("a block with the keys: {}", fmt::join(keys_of(*entry.nested), ", "));
     case Kind::sections:
@@ -130,6 +132,8 @@ std::string type_text(const Entry& entry) {
       return count + "integers";
     case Kind::texts:
       return count + "texts";
+    case Kind::dictionary:
+      return "block of texts";
     case Kind::section:
       return "block";
     case Kind::sections:

@@ -97,6 +97,10 @@ EntryBuilder Specification::texts(std::string key, std::string help) {
   return add(Entry::Kind::texts, std::move(key), std::move(help));
 }
 
+EntryBuilder Specification::dictionary(std::string key, std::string help) {
+  return add(Entry::Kind::dictionary, std::move(key), std::move(help));
+}
+
 EntryBuilder Specification::section(std::string key, std::string help, Specification nested) {
   return add(Entry::Kind::section, std::move(key), std::move(help), {},
              std::make_shared<const Specification>(std::move(nested)));

@@ -28,6 +28,7 @@ struct Entry {
     reals,       ///< Teuchos::Array<double> of `length` entries (0: any)
     integers,    ///< Teuchos::Array<int>, likewise
     texts,       ///< Teuchos::Array<std::string>, likewise
+    dictionary,  ///< sublist whose keys are the user's, each a std::string or a Teuchos::Array<std::string>
     section,     ///< sublist with fixed keys: `nested`
     sections,    ///< list of maps, each with keys `nested`; sublist with sublists "0", "1", …
     component,   ///< sublist with "type", a registered name of `category`, and that component's own keys
@@ -88,6 +89,8 @@ class Specification {
   EntryBuilder reals(std::string key, std::string help);
   EntryBuilder integers(std::string key, std::string help);
   EntryBuilder texts(std::string key, std::string help);
+  /// A block whose keys the user chooses, each with a text or a list of texts.
+  EntryBuilder dictionary(std::string key, std::string help);
   EntryBuilder section(std::string key, std::string help, Specification nested);
   EntryBuilder sections(std::string key, std::string help, Specification nested);
   template <class Base>

@@ -1,9 +1,11 @@
 #include "framework/report/Timing.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <Teuchos_CommHelpers.hpp>
 #include <ctime>
+#include <fstream>
 #include <sstream>
 
 namespace kiln {
@@ -38,6 +40,12 @@ long long peak_memory(const Communicator& communicator) {
   long long largest = 0;
   Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &mine, &largest);
   return largest;
+}
+
+void reset_peak_memory() {
+  malloc_trim(0);
+  // proc(5): 5 resets the peak resident set, which getrusage reports.
+  std::ofstream("/proc/self/clear_refs") << "5";
 }
 
 std::string table_of(Teuchos::StackedTimer& timer, const Teuchos::RCP<const Communicator>& communicator) {

@@ -23,8 +23,11 @@ class Stopwatch {
   double process_start_;
 };
 
-/// Largest memory any rank has held so far, in bytes. Collective.
+/// Largest memory any rank has held since its start or the last reset_peak_memory(), in bytes. Collective.
 long long peak_memory(const Communicator& communicator);
+/// Gives freed memory back to the system and lets peak_memory() begin anew: for several runs in one process. A system
+/// that does not allow it keeps the old peak.
+void reset_peak_memory();
 
 /// The timer's table with minimum, mean and maximum over the ranks; on rank 0, empty elsewhere. The timer is stopped
 /// already. Collective.

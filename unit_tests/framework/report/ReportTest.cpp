@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
 
 #include "framework/base/Error.hpp"
 #include "framework/report/Hash.hpp"
@@ -43,6 +44,25 @@ TEST(Hash, OfAFileIsThatOfItsBytes) {
   EXPECT_EQ(hash_of_file(folder / "a"), hash_of(bytes));
   EXPECT_THROW(hash_of_file(folder / "none"), FileError);
   EXPECT_THROW(hash_of_file(folder.path()), FileError);
+}
+
+/// Takes memory and gives it back; writes that the compiler must not drop make it resident.
+void hold(long long bytes) {
+  std::vector<char> block(static_cast<std::size_t>(bytes));
+  volatile char* const values = block.data();
+  for (long long i = 0; i < bytes; i += 4096) values[i] = 'x';
+}
+
+TEST(PeakMemory, BeginsAnewWhenReset) {
+  if (!std::ofstream("/proc/self/clear_refs")) GTEST_SKIP() << "this system keeps the peak";
+  constexpr long long size = 256LL << 20;
+  hold(size);
+  const long long before = peak_memory(*world());
+  reset_peak_memory();
+  const long long after = peak_memory(*world());
+  EXPECT_LT(after, before - size / 2);
+  hold(size);
+  EXPECT_GT(peak_memory(*world()), after + size / 2);
 }
 
 TEST(Provenance, NamesWhatTheResultsComeFrom) {
