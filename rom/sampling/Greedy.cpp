@@ -94,13 +94,19 @@ int share(int total, int turns, int turn) { return total / turns + (turn < total
 
 Specification Greedy::specification() {
   Specification s;
-  s.integer("samples", "particles to choose; left out: twice the residual basis' rank").at_least(1).optional();
+  s.integer("samples", "particles to choose; left out: samples_per_mode times the residual basis' rank")
+      .at_least(1)
+      .optional();
+  s.real("samples_per_mode", "particles a residual mode; 1: interpolation, as the report has it, which amplifies errors")
+      .at_least(1)
+      .defaults_to(2.0);
   s.integers("seeds", "ids of particles that are chosen in any case").optional();
   return s;
 }
 
 Greedy::Greedy(const Teuchos::ParameterList& list, const NoContext&)
-    : path_(list.name()), samples_(list.isParameter("samples") ? list.get<int>("samples") : 0) {
+    : path_(list.name()), samples_(list.isParameter("samples") ? list.get<int>("samples") : 0),
+      samples_per_mode_(list.get<double>("samples_per_mode")) {
   if (!list.isParameter("seeds")) return;
   for (const int seed : list.get<Teuchos::Array<int>>("seeds")) seeds_.push_back(seed);
 }
@@ -125,7 +131,10 @@ std::vector<GlobalIndex> Greedy::checked_seeds(GlobalIndex particles) const {
 
 int Greedy::checked_samples(GlobalIndex particles, int modes, int components, int seeds) const {
   const int fewest = std::max((modes + components - 1) / components, seeds);
-  if (samples_ == 0) return static_cast<int>(std::min<GlobalIndex>(std::max(2 * modes, fewest), particles));
+  if (samples_ == 0) {
+    const int by_modes = static_cast<int>(std::ceil(samples_per_mode_ * modes));
+    return static_cast<int>(std::min<GlobalIndex>(std::max(by_modes, fewest), particles));
+  }
   if (samples_ < fewest) {
     throw InputError(path_ + ".samples",
                      fmt::format("{} particles with {} component{} each cannot determine {} residual modes{}", samples_,

@@ -22,7 +22,8 @@ class Greedy : public Sampling {
   int checked_samples(GlobalIndex particles, int modes, int components, int seeds) const;
 
   std::string path_;
-  int samples_;  ///< 0: twice the residual rank
+  int samples_;  ///< 0: as many as the residual rank times samples_per_mode_
+  double samples_per_mode_;
   std::vector<GlobalIndex> seeds_;
 };
 

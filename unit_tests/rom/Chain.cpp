@@ -230,6 +230,7 @@ Teuchos::ParameterList input_of(const Case& values) {
   sampling.setName("reduction.sampling");
   sampling.set("type", std::string("greedy"));
   sampling.set("samples", values.samples);
+  sampling.set("samples_per_mode", 2.0);
   reduction.sublist("snapshots").set("every", 1);
   if (values.windows > 0) reduction.sublist("windows").set("count", values.windows);
   if (values.window_error > 0.0) reduction.sublist("windows").set("error", values.window_error);

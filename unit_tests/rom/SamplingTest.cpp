@@ -20,10 +20,11 @@ using test::world;
 using Ids = std::vector<GlobalIndex>;
 using Table = std::vector<std::vector<double>>;  ///< one row an entry of particles × components
 
-std::unique_ptr<Sampling> greedy(int samples, const std::vector<int>& seeds = {}) {
+std::unique_ptr<Sampling> greedy(int samples, const std::vector<int>& seeds = {}, double samples_per_mode = 2.0) {
   Teuchos::ParameterList list("reduction.sampling");
   list.set("type", std::string("greedy"));
   if (samples > 0) list.set("samples", samples);
+  list.set("samples_per_mode", samples_per_mode);
   if (!seeds.empty()) list.set("seeds", Teuchos::Array<int>(seeds));
   return Registry<Sampling>::create(list, NoContext{});
 }
@@ -91,6 +92,12 @@ TEST(Greedy, AddsUpAParticlesComponents) {
   // Squares of the first mode by particle: 25 + 0, 16 + 16, 1 + 1.
   const Table table = {{5}, {0}, {4}, {4}, {1}, {1}};
   EXPECT_EQ(sample(*greedy(1), table, 2, world()), (Ids{1}));
+}
+
+TEST(Greedy, ChoosesAsManyAModeAsAsked) {
+  const Table table = random_table(90, 12);
+  EXPECT_EQ(sample(*greedy(0, {}, 1.0), table, 1, world()).size(), 12u);
+  EXPECT_EQ(sample(*greedy(0, {}, 1.3), table, 1, world()).size(), 16u);
 }
 
 TEST(Greedy, ChoosesTheSameOnAnyNumberOfRanks) {
