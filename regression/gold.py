@@ -42,7 +42,10 @@ DEFAULT_TOLERANCES = {
 COUNTS = {
     "run": ["steps"],
     "solve": ["residuals", "iterations", "capped_steps"],
-    "method": ["linearisations", "basis_rank", "residual_rank", "sampled", "sources", "queried", "linear_iterations"],
+    "method": [
+        "linear_iterations", "jacobian_evaluations", "linearisations",
+        "basis_rank", "residual_rank", "sampled", "sources", "queried",
+    ],
 }
 
 

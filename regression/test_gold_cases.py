@@ -35,7 +35,7 @@ class CasesTest(KilnTest):
         components = self.components()
         self.assertGreater(len(components), 20)
         without = [f"{category} '{name}'" for category, name in components if not self.uses("type", name)]
-        self.assertEqual(without, [], "no file of regression/cases uses these; ./dev gold writes a new case's gold values")
+        self.assertEqual(without, [], "no file of regression/cases uses these; ./dev gold writes a case's gold values")
 
     def test_every_choice_has_a_case(self):
         without, count = [], 0

@@ -54,8 +54,9 @@ class ControlsTest(KilnTest):
 
     def test_perturbed_field(self):
         particle, x, y, z, _ = self.perturb("run/field.csv", 100, 4)
-        columns = zip(("x [m]", "y [m]", "z [m]"), (x, y, z))
-        place = f"line 100, particle = {particle}, " + ", ".join(f"{name} = {float(value):.6g}" for name, value in columns)
+        place = f"line 100, particle = {particle}"
+        for name, value in (("x [m]", x), ("y [m]", y), ("z [m]", z)):
+            place += f", {name} = {float(value):.6g}"
         self.fails("run", "DIFFERS field.csv:temperature [K]", ", 1 beyond 1e-09; worst 1e-06 relative", place)
 
     def test_perturbed_probe(self):
