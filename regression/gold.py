@@ -38,7 +38,7 @@ DEFAULT_TOLERANCES = {
     "training": ["*relative singular value=1e-9,1", "*largest singular value=1e-9", "* [m]=1e-9,1e-6"],
 }
 
-# Numbers of a report that tell how a solution was reached and that no restart, machine or hour changes.
+# Numbers of a report that tell how a solution was reached and that neither machine nor hour changes.
 COUNTS = {
     "run": ["steps"],
     "solve": ["residuals", "iterations", "capped_steps"],
@@ -82,7 +82,8 @@ class Case:
 
     def compare(self, part, found):
         """`kiln compare` of one part of the gold values with what was found."""
-        fields = [word for tolerance in self.facts()["tolerances"][part] for word in ("--field", tolerance)]
+        tolerances = self.facts()["tolerances"].get(part, DEFAULT_TOLERANCES[part])
+        fields = [word for tolerance in tolerances for word in ("--field", tolerance)]
         return harness.kiln(
             HERE, "compare", self.gold / part, Path(found) / part, "--tolerance", TOLERANCE, *fields
         )
