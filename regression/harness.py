@@ -13,7 +13,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-SMALL = Path(__file__).resolve().parent / "cases" / "small.yaml"
+HERE = Path(__file__).resolve().parent
+SMALL = HERE / "cases" / "small.yaml"
 
 # What mpirun adds of its own when a rank ends with another status than 0.
 MPIEXEC_NOTICE = re.compile(r"^-{40,}\n.*?^-{40,}\n", re.MULTILINE | re.DOTALL)
@@ -26,6 +27,32 @@ class Outcome:
         self.status = status
         self.stdout = stdout
         self.stderr = MPIEXEC_NOTICE.sub("", stderr)
+
+
+def command(*arguments, ranks=1):
+    """The words of a command line; one rank needs no mpirun."""
+    launcher = [os.environ.get("MPIEXEC", "mpiexec"), "-n", str(ranks)] if ranks > 1 else []
+    return launcher + [os.environ["KILN"]] + [str(argument) for argument in arguments]
+
+
+def kiln(folder, *arguments, ranks=1, **how):
+    """Runs kiln in a folder."""
+    return program(folder, *command(*arguments, ranks=ranks), **how)
+
+
+def program(folder, *words, timeout=60, environment=None):
+    """Runs a program in a folder; `environment` adds to this process's own."""
+    done = subprocess.run(
+        [str(word) for word in words],
+        cwd=folder,
+        env={**os.environ, **(environment or {})},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        encoding="utf-8",
+        timeout=timeout,
+    )
+    return Outcome(done.returncode, done.stdout, done.stderr)
 
 
 class KilnTest(unittest.TestCase):
@@ -49,22 +76,8 @@ class KilnTest(unittest.TestCase):
         add_cleanup(temporary.cleanup)
         return Path(temporary.name)
 
-    def command(self, *arguments, ranks=1):
-        """The words of a command line; one rank needs no mpirun."""
-        launcher = [os.environ.get("MPIEXEC", "mpiexec"), "-n", str(ranks)] if ranks > 1 else []
-        return launcher + [os.environ["KILN"]] + [str(argument) for argument in arguments]
-
-    def kiln(self, *arguments, ranks=1, timeout=60):
-        done = subprocess.run(
-            self.command(*arguments, ranks=ranks),
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            encoding="utf-8",
-            timeout=timeout,
-        )
-        return Outcome(done.returncode, done.stdout, done.stderr)
+    def kiln(self, *arguments, **how):
+        return kiln(self.folder, *arguments, **how)
 
     def solve(self, command, *overrides, into="results", ranks=1, options=()):
         """`kiln run` or `kiln train` of the small case, which must succeed in silence."""

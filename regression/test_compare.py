@@ -43,6 +43,22 @@ class CompareTest(KilnTest):
         self.differs("DIFFERS run.h5:/temperature", f"frame 3, t = 0.0015 s, particle 100 at ({x:.6g}, {y:.6g}, {z:.6g})")
         self.same("--tolerance", 1e-5)
 
+    def test_a_tolerance_of_one_field(self):
+        self.perturb(3, 100, 1.0 + 1e-6)
+        self.same("--field", "run.h5:/temperature=1e-5")
+        self.same("--field", "probes.csv:*=0", "--field", "*:/temp*=1e-9,1e6")
+        options = ("--field", "run.h5:/temperature=1e-7", "--tolerance", 1)
+        self.differs("particle 100", "1 beyond 1e-07", options=options)
+        options = ("--field", "run.h5:/temprature=1", "--tolerance", 1)
+        self.differs("no field is called 'run.h5:/temprature'", options=options)
+
+    def test_a_tolerance_that_is_none(self):
+        for text in ("temperature", "=1e-5", "temperature=", "temperature=-1", "temperature=nan", "temperature=1e-5,x"):
+            compared = self.kiln("compare", "a/fom", "b/fom", "--field", text)
+            self.assertEqual((compared.status, compared.stdout), (2, ""), text)
+            self.assertIn(f"--field {text}", compared.stderr)
+            self.assertIn("FIELDS=TOLERANCE", compared.stderr)
+
     def test_one_value_by_one_bit(self):
         self.perturb(4, 7, 1.0 + 2.0**-52)
         self.same()

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 
-from harness import SMALL, KilnTest, datasets, digests, main
+from harness import SMALL, KilnTest, command, datasets, digests, main
 
 # Slow enough that the beam stays on the part, long enough that a kill comes in the middle.
 CASE = ("model.heat_source.velocity=[0.1 m/s, 0 m/s]", "output.checkpoint.every=4")
@@ -36,7 +36,7 @@ class RestartTest(KilnTest):
         """Starts a run and kills its processes as soon as a checkpoint of that step or a later one stands there."""
         words = [word for override in self.overrides(method) for word in ("--set", override)]
         process = subprocess.Popen(
-            self.command("run", SMALL, *words, "--set", f"output.directory={into}", "--quiet", ranks=ranks),
+            command("run", SMALL, *words, "--set", f"output.directory={into}", "--quiet", ranks=ranks),
             cwd=self.folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,

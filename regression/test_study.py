@@ -10,9 +10,9 @@ import time
 
 import pandas
 
-from harness import SMALL, KilnTest, datasets, digests, main
+from harness import HERE, SMALL, KilnTest, command, datasets, digests, main
 
-STUDY = SMALL.parent / "study.yaml"
+STUDY = HERE / "study.yaml"
 NAMES = ["power-10", "power-20", "trained"] + [
     f"reduced/{method}-{tolerance}" for method in ("gnat", "lspg") for tolerance in ("1e-3", "1e-6")
 ]
@@ -111,7 +111,7 @@ class StudyTest(KilnTest):
     def kill_when(self, reached, file, ranks=1):
         """Starts the study and kills its processes once that is so."""
         process = subprocess.Popen(
-            self.command("study", file, ranks=ranks),
+            command("study", file, ranks=ranks),
             cwd=self.folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -225,9 +225,9 @@ class StudyTest(KilnTest):
     def test_changed_input(self):
         cases = self.folder / "cases"
         cases.mkdir()
-        for file in (SMALL, STUDY):
-            shutil.copy(file, cases)
-        study = cases / "study.yaml"
+        shutil.copy(SMALL, cases)
+        study = self.folder / "study.yaml"
+        shutil.copy(STUDY, study)
         self.study(study)
         before = {name: state(self.folder / "study" / name) for name in NAMES}
         study.write_text(study.read_text().replace("    command: train\n", "    command: train\n    set: {title: Another}\n"))

@@ -16,6 +16,7 @@ class Checkpoint : public Observer {
   /// `identity` is the text of what must agree between the runs: model, time and method. every: steps; 0: never.
   Checkpoint(const Context& context, TimeScheme& scheme, int every, std::string identity);
 
+  void begin() override {}
   void observe(const Moment& moment) override;
   void finish(RunReport& report) override;
 

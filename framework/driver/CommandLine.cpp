@@ -95,6 +95,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   std::string name, left, right, folder;
   double tolerance = 1e-10;
   double floor = 0.0;
+  std::vector<std::string> own_tolerances;
   std::function<int()> command;
 
   CLI::App* run_app = app.add_subcommand("run", "Run an input: full order or reduced, as its `method` says");
@@ -190,11 +191,19 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   compare_app->add_option("--floor", floor, "values below it count as this large")
       ->capture_default_str()
       ->check(non_negative);
+  compare_app
+      ->add_option("--field", own_tolerances,
+                   "tolerance, and floor in the field's unit, of the fields with this name, as printed; '*' stands for "
+                   "any text; of several the first one counts")
+      ->type_name("FIELDS=TOLERANCE[,FLOOR]")
+      ->allow_extra_args(false);
   compare_app->callback([&] {
     command = [&]() -> int {
+      std::vector<FieldTolerance> own;
+      for (const std::string& text : own_tolerances) own.push_back(field_tolerance(text));
       int same = 0;
       if (communicator->getRank() == 0) {
-        const CompareResult result = compare(left, right, tolerance, floor);
+        const CompareResult result = compare(left, right, tolerance, floor, own);
         print(*communicator, result.text());
         same = result.same() ? 1 : 0;
       }

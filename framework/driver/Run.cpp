@@ -70,6 +70,11 @@ class Assembly {
 
   void add(std::unique_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
 
+  /// Makes the files of the outputs.
+  void begin() {
+    for (const auto& observer : observers_) observer->begin();
+  }
+
   LoopTotals march() {
     std::vector<Observer*> observers;
     for (const auto& observer : observers_) observers.push_back(observer.get());
@@ -198,6 +203,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   if (!options.quiet) {
     assembly->add(std::make_unique<ProgressObserver>(type, assembly->span().first_step, *communicator));
   }
+  assembly->begin();
   const Seconds setup = elapsed(total, *communicator);
 
   RunReport report;

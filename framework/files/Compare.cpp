@@ -26,12 +26,20 @@ double relative_difference(double a, double b, double floor) {
   return std::abs(a - b) / std::max({std::abs(a), std::abs(b), floor});
 }
 
+void require_finite(double tolerance, double floor) {
+  if (!std::isfinite(tolerance) || tolerance < 0.0 || !std::isfinite(floor) || floor < 0.0) {
+    throw std::invalid_argument(
+        fmt::format("compare: tolerance {} and floor {} must be finite and at least 0", tolerance, floor));
+  }
+}
+
 bool is_comparable(const fs::path& file) {
   const std::string kind = file.extension().string();
   return kind == ".h5" || kind == ".csv" || kind == ".json";
 }
 
 void compare_files(const fs::path& a, const fs::path& b, const std::string& label, NumberComparison& comparison) {
+  const std::size_t compared = comparison.compared(), faults = comparison.faults();
   try {
     const std::string kind = a.extension().string();
     if (kind != b.extension().string()) {
@@ -48,13 +56,16 @@ void compare_files(const fs::path& a, const fs::path& b, const std::string& labe
   } catch (const FileError& error) {
     comparison.fault(error.what());
   }
+  if (comparison.compared() == compared && comparison.faults() == faults) {
+    comparison.fault(fmt::format("nothing was compared of {} and {}", a.string(), b.string()));
+  }
 }
 
 void compare_folders(const fs::path& a, const fs::path& b, NumberComparison& comparison) {
   std::set<std::string> names;
   for (const fs::path& folder : {a, b}) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      if (is_comparable(entry.path())) names.insert(entry.path().filename().string());
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      if (is_comparable(entry.path())) names.insert(fs::relative(entry.path(), folder).string());
     }
   }
   for (const std::string& name : names) {
@@ -69,16 +80,38 @@ void compare_folders(const fs::path& a, const fs::path& b, NumberComparison& com
 
 }  // namespace
 
+void NumberComparison::begin(const std::string& field) {
+  FieldDifference difference;
+  difference.field = field;
+  difference.tolerance = tolerance_;
+  difference.floor = floor_;
+  const auto own =
+      std::find_if(own_.begin(), own_.end(), [&field](const FieldTolerance& each) { return each.matches(field); });
+  if (own != own_.end()) {
+    used_[own - own_.begin()] = true;
+    difference.tolerance = own->tolerance;
+    difference.floor = own->floor;
+  }
+  result_.fields.push_back(std::move(difference));
+}
+
 void NumberComparison::add(double a, double b, const std::function<std::string()>& where) {
   FieldDifference& field = result_.fields.back();
-  const double difference = relative_difference(a, b, floor_);
+  const double difference = relative_difference(a, b, field.floor);
   ++field.compared;
-  if (difference > tolerance_) ++field.failed;
+  if (difference > field.tolerance) ++field.failed;
   if (difference > field.worst) {
     field.worst = difference;
     field.a = a;
     field.b = b;
     field.where = where();
+  }
+}
+
+void NumberComparison::fault_unused_tolerances() {
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (!used_[i])
+      fault(fmt::format("no field is called '{}', or all that are have an earlier tolerance", own_[i].fields));
   }
 }
 
@@ -100,7 +133,7 @@ std::string CompareResult::text() const {
   for (const FieldDifference& field : fields) {
     text += fmt::format("{} {:<{}}  {} numbers", field.failed == 0 ? "same " : "DIFFERS", field.field, width,
                         field.compared);
-    if (field.failed > 0) text += fmt::format(", {} beyond the tolerance", field.failed);
+    if (field.failed > 0) text += fmt::format(", {} beyond {:g}", field.failed, field.tolerance);
     if (field.worst > 0.0) {
       text += fmt::format("; worst {:.3g} relative: {} and {} at {}", field.worst, field.a, field.b, field.where);
     }
@@ -111,13 +144,12 @@ std::string CompareResult::text() const {
   return text + fmt::format("{}: {} numbers compared\n", same() ? "same" : "different", compared());
 }
 
-CompareResult compare(const fs::path& a, const fs::path& b, double tolerance, double floor) {
-  if (!std::isfinite(tolerance) || tolerance < 0.0 || !std::isfinite(floor) || floor < 0.0) {
-    throw std::invalid_argument(
-        fmt::format("compare: tolerance {} and floor {} must be finite and at least 0", tolerance, floor));
-  }
+CompareResult compare(const fs::path& a, const fs::path& b, double tolerance, double floor,
+                      const std::vector<FieldTolerance>& own) {
+  require_finite(tolerance, floor);
+  for (const FieldTolerance& each : own) require_finite(each.tolerance, each.floor);
   CompareResult result;
-  NumberComparison comparison(tolerance, floor, result);
+  NumberComparison comparison(tolerance, floor, own, result);
   for (const fs::path& side : {a, b}) {
     if (!fs::exists(side)) comparison.fault(side.string() + " is missing");
   }
@@ -130,6 +162,7 @@ CompareResult compare(const fs::path& a, const fs::path& b, double tolerance, do
   } else {
     compare_files(a, b, "", comparison);
   }
+  if (result.faults.empty()) comparison.fault_unused_tolerances();
   return result;
 }
 

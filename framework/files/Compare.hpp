@@ -4,16 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "framework/files/FieldTolerance.hpp"
+
 namespace kiln {
 
 /// How one field (a dataset, a CSV column, a JSON number) of two results differs.
 struct FieldDifference {
   std::string field;
+  double tolerance = 0.0, floor = 0.0;
   std::size_t compared = 0;  ///< numbers
   std::size_t failed = 0;    ///< numbers beyond the tolerance
   double worst = 0.0;        ///< largest |a − b| / max(|a|, |b|, floor)
   double a = 0.0, b = 0.0;   ///< the values there
-  std::string where;         ///< frame, time, particle, position; or line; or index
+  std::string where;         ///< frame, time, particle, position; or line, step, time; or index
 };
 
 struct CompareResult {
@@ -27,11 +30,14 @@ struct CompareResult {
 };
 
 /// Compares two run folders, or two files of the same kind (.h5, .csv, .json), number by number. Two numbers agree when
-/// |a − b| ≤ tolerance · max(|a|, |b|, floor). Fails on a side, a file or a field that is missing, on other shapes, on
-/// a NaN on either side, and when nothing was compared. In a run file, a frame that neither side has written is passed
-/// over. In JSON only numbers count, without the keys `provenance`, `timing` and `speedup` and those that tell seconds
-/// of work or memory; in a folder all files of the three kinds count. Not collective: one rank reads both.
-/// Throws std::invalid_argument for a tolerance or floor that is negative or not finite.
-CompareResult compare(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance, double floor);
+/// |a − b| ≤ tolerance · max(|a|, |b|, floor), where `own` may name fields that have a tolerance and floor of their
+/// own; the first that matches counts. Fails on a side, a file or a field that is missing, on other shapes, on a NaN on
+/// either side, on an own tolerance that matches no field, and when nothing was compared, in all or in one of the
+/// files. In a run file, a frame that neither side has written is passed over. In JSON only numbers count, without the
+/// keys `provenance`, `timing` and `speedup` and those that tell seconds of work or memory; in a folder all files of
+/// the three kinds count, those of subfolders too. Not collective: one rank reads both. Throws std::invalid_argument
+/// for a tolerance or floor that is negative or not finite.
+CompareResult compare(const std::filesystem::path& a, const std::filesystem::path& b, double tolerance, double floor,
+                      const std::vector<FieldTolerance>& own = {});
 
 }  // namespace kiln

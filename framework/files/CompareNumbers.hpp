@@ -10,18 +10,25 @@ namespace kiln {
 /// Compares the numbers of one field after the other and keeps the worst.
 class NumberComparison {
  public:
-  NumberComparison(double tolerance, double floor, CompareResult& result)
-      : tolerance_(tolerance), floor_(floor), result_(result) {}
+  /// Fields that none of `own` names have `tolerance` and `floor`; of several that do, the first one counts.
+  NumberComparison(double tolerance, double floor, std::vector<FieldTolerance> own, CompareResult& result)
+      : tolerance_(tolerance), floor_(floor), own_(std::move(own)), used_(own_.size(), false), result_(result) {}
 
   /// The numbers that follow belong to this field.
-  void begin(const std::string& field) { result_.fields.push_back({field, 0, 0, 0.0, 0.0, 0.0, {}}); }
+  void begin(const std::string& field);
   /// `where` is asked only when this is the worst so far.
   void add(double a, double b, const std::function<std::string()>& where);
   void fault(const std::string& text) { result_.faults.push_back(text); }
+  std::size_t compared() const { return result_.compared(); }
+  std::size_t faults() const { return result_.faults.size(); }
+  /// Faults the tolerances that named no field: they may be misspelt, and then the field they meant had another one.
+  void fault_unused_tolerances();
 
  private:
   double tolerance_;
   double floor_;
+  std::vector<FieldTolerance> own_;
+  std::vector<bool> used_;
   CompareResult& result_;
 };
 

@@ -75,6 +75,29 @@ class JsonComparison {
   NumberComparison& comparison_;
 };
 
+/// What tells one row of a table from the others: "line 7, particle = 5, x [m] = 0.001, …".
+class RowPlaces {
+ public:
+  explicit RowPlaces(const CsvTable& table) : table_(table) {
+    static const std::set<std::string> names = {"step", "time [s]", "particle", "x [m]", "y [m]", "z [m]"};
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
+      if (names.count(table.columns[column]) > 0) columns_.push_back(column);
+    }
+    if (columns_.empty()) columns_.push_back(0);
+  }
+  std::string where(std::size_t row) const {
+    std::string text = fmt::format("line {}", row + 2);
+    for (const std::size_t column : columns_) {
+      text += fmt::format(", {} = {:.6g}", table_.columns[column], table_.rows[row][column]);
+    }
+    return text;
+  }
+
+ private:
+  const CsvTable& table_;
+  std::vector<std::size_t> columns_;
+};
+
 }  // namespace
 
 void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b, const std::string& label,
@@ -87,11 +110,11 @@ void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b,
     return comparison.fault(
         fmt::format("{} has {} rows, {} has {}", a.string(), left.rows.size(), b.string(), right.rows.size()));
   }
+  const RowPlaces places(left);
   for (std::size_t column = 0; column < left.columns.size(); ++column) {
     comparison.begin(label + left.columns[column]);
     for (std::size_t row = 0; row < left.rows.size(); ++row) {
-      comparison.add(left.rows[row][column], right.rows[row][column],
-                     [&] { return fmt::format("line {}, {} = {}", row + 2, left.columns[0], left.rows[row][0]); });
+      comparison.add(left.rows[row][column], right.rows[row][column], [&] { return places.where(row); });
     }
   }
 }

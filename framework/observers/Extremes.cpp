@@ -65,12 +65,11 @@ std::vector<Extremes::Extreme> Extremes::local_extremes(const Moment& moment) {
   return extremes;
 }
 
-void Extremes::open() {
+void Extremes::begin() {
   log_ = std::make_unique<CsvLog>(context_.folder / file_name, columns(), context_.first_step, context_.communicator);
 }
 
 void Extremes::observe(const Moment& moment) {
-  if (log_ == nullptr) open();
   if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
   const std::vector<Extreme> mine = local_extremes(moment);
   const int ranks = context_.communicator->getSize();
@@ -94,8 +93,6 @@ void Extremes::observe(const Moment& moment) {
 }
 
 void Extremes::finish(RunReport& report) {
-  // A run that restarts from its last step observes nothing more.
-  if (log_ == nullptr) open();
   log_->check();
   nlohmann::json section;
   if (context_.communicator->getRank() == 0) {

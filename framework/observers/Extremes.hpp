@@ -19,6 +19,7 @@ class Extremes : public Observer {
   static Specification specification();
   Extremes(const Teuchos::ParameterList& list, const Context& context);
 
+  void begin() override;
   void observe(const Moment& moment) override;
   /// Section `observers`, key `extremes`: for each component `largest` and `smallest` of the whole run, earlier parts
   /// of a restarted one included, with time and particle.
@@ -29,7 +30,6 @@ class Extremes : public Observer {
     double value;
     double particle;  ///< global id; exact as a double
   };
-  void open();
   std::vector<std::string> columns() const;
   /// Largest and smallest of each component on this rank, in turn.
   std::vector<Extreme> local_extremes(const Moment& moment);
@@ -38,7 +38,7 @@ class Extremes : public Observer {
   int every_;
   std::vector<Field> fields_;
   VectorView state_;
-  std::unique_ptr<CsvLog> log_;  ///< null before the first moment
+  std::unique_ptr<CsvLog> log_;  ///< null before begin()
 };
 
 }  // namespace kiln

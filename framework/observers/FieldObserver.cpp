@@ -42,7 +42,7 @@ FieldObserver::FieldObserver(const Teuchos::ParameterList& list, const Context& 
       steps_(output_steps(list.get<int>("every"), context.last_step)),
       u_("kiln::observers::state", context.method.positions().extent(0) * context.method.fields().size()) {}
 
-void FieldObserver::open() {
+void FieldObserver::begin() {
   const Method& method = context_.method;
   const std::size_t states = method.particles()->getGlobalNumElements() * method.fields().size();
   const std::size_t unknowns = method.coordinates()->getGlobalNumElements();
@@ -54,15 +54,12 @@ void FieldObserver::open() {
 }
 
 void FieldObserver::observe(const Moment& moment) {
-  if (file_ == nullptr) open();
   if (!std::binary_search(steps_.begin(), steps_.end(), moment.step)) return;
   context_.method.state(moment.x, u_);
   file_->write(moment.step, moment.time, u_, moment.x);
 }
 
 void FieldObserver::finish(RunReport& report) {
-  // A run that restarts from its last step observes nothing more.
-  if (file_ == nullptr) open();
   report.section("fields") = {{"file", "run.h5"},
                               {"frames", file_->frames_written()},
                               {"particles", context_.method.particles()->getGlobalNumElements()}};

@@ -15,16 +15,16 @@ class FieldObserver : public Observer {
   static Specification specification();
   FieldObserver(const Teuchos::ParameterList& list, const Context& context);
 
+  void begin() override;
   void observe(const Moment& moment) override;
   void finish(RunReport& report) override;
 
  private:
-  void open();
 
   Context context_;
   std::vector<int> steps_;
   VectorView u_;
-  std::unique_ptr<RunFile> file_;  ///< null before the first moment
+  std::unique_ptr<RunFile> file_;  ///< null before begin()
 };
 
 }  // namespace kiln

@@ -21,8 +21,8 @@ struct Moment {
 
 /// Looks at a run after its initial state and after every step: writes fields, probes, checkpoints, collects snapshots.
 /// Calls are collective. Registered observers are blocks of `output:` in the input, by their name. Constructors check
-/// and throw; files are made or changed at the first `observe`, when every observer of the run has passed, so that a
-/// mistake in one block never costs the results of an earlier run.
+/// and throw; files are made or changed by `begin`, when every observer of the run has passed, so that a mistake in one
+/// block never costs the results of an earlier run.
 class Observer {
  public:
   struct Context {
@@ -38,6 +38,8 @@ class Observer {
   static constexpr const char* category = "observer";
 
   virtual ~Observer() = default;
+  /// Before the first moment, once, when all observers of the run have been built: makes the observer's files.
+  virtual void begin() = 0;
   virtual void observe(const Moment& moment) = 0;
   /// After the last step; adds what belongs into the run's report.
   virtual void finish(RunReport& report) = 0;

@@ -65,7 +65,7 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
   read_host_ = Kokkos::create_mirror_view(read_);
 }
 
-void ProbeObserver::open() {
+void ProbeObserver::begin() {
   log_ = std::make_unique<CsvLog>(file_, columns(), context_.first_step, communicator_);
   write_places();
 }
@@ -135,7 +135,6 @@ void ProbeObserver::gather_values(ConstVectorView x) {
 }
 
 void ProbeObserver::observe(const Moment& moment) {
-  if (log_ == nullptr) open();
   if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
   gather_values(moment.x);
   std::vector<double> row{moment.time};
@@ -168,8 +167,6 @@ nlohmann::json ProbeObserver::summary() const {
 }
 
 void ProbeObserver::finish(RunReport& report) {
-  // A run that restarts from its last step observes nothing more.
-  if (log_ == nullptr) open();
   log_->check();
   std::string text;
   on_root(*communicator_, file_.string(), [&]() -> std::optional<Fault> {

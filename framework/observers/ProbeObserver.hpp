@@ -23,6 +23,7 @@ class ProbeObserver : public Observer {
   /// Throws InputError that lists all probes outside the particles, FileError when its files cannot be written.
   ProbeObserver(const Teuchos::ParameterList& list, const Context& context);
 
+  void begin() override;
   void observe(const Moment& moment) override;
   void finish(RunReport& report) override;
 
@@ -33,7 +34,6 @@ class ProbeObserver : public Observer {
     NearestParticle particle;
   };
   static std::vector<Probe> find_probes(const Teuchos::ParameterList& list, const Context& context);
-  void open();
   void write_places() const;
   std::vector<std::string> columns() const;
   void gather_values(ConstVectorView x);
@@ -52,7 +52,7 @@ class ProbeObserver : public Observer {
   VectorView::HostMirror read_host_;
   std::vector<double> local_;    ///< probe by probe, component by component; 0 where another rank has the particle
   std::vector<double> values_;   ///< likewise, complete on rank 0
-  std::unique_ptr<CsvLog> log_;  ///< null before the first moment
+  std::unique_ptr<CsvLog> log_;  ///< null before begin()
 };
 
 }  // namespace kiln

@@ -20,6 +20,7 @@ class ProgressObserver : public Observer {
   /// For another stream; `terminal` says whether to draw a bar.
   ProgressObserver(std::string label, int first_step, std::FILE* stream, bool terminal);
 
+  void begin() override {}
   void observe(const Moment& moment) override;
   void finish(RunReport& report) override;
 

@@ -6,11 +6,26 @@
 #include "rom/basis/AffineBasis.hpp"
 
 namespace kiln {
+namespace {
+
+constexpr const char* kept = "kept";
+constexpr const char* every_iteration = "every iteration";
+
+}  // namespace
 
 Specification reduced_specification() {
   Specification s;
   s.file("file", "the reduction file `kiln train` wrote; left out: reduction.h5 in output.directory").optional();
+  s.choice("factors",
+           "when the test basis and the factors of the reduced Jacobian are formed: with each new Jacobian, or "
+           "in every iteration as Algorithm 1 is printed",
+           {kept, every_iteration})
+      .defaults_to(kept);
   return s;
+}
+
+Projection::Factors factors_of(const Teuchos::ParameterList& method) {
+  return method.get<std::string>("factors") == kept ? Projection::Factors::kept : Projection::Factors::every_iteration;
 }
 
 PetrovGalerkin::Parts full_size_parts(const std::shared_ptr<Model>& model, const std::vector<TimeWindow>& windows,

@@ -11,6 +11,8 @@ namespace kiln {
 
 /// Keys that galerkin, lspg and gnat share.
 Specification reduced_specification();
+/// The key `factors` of a reduced method's block.
+Projection::Factors factors_of(const Teuchos::ParameterList& method);
 
 /// The parts of reduced methods on all rows of a full-order model: state, positions and test space are of size N.
 /// `reference` and `modes`, [Φ_0 Φ_1 …], stand on the model's sources.

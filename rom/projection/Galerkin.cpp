@@ -7,9 +7,9 @@ namespace {
 class Galerkin : public PetrovGalerkin {
  public:
   static Specification specification() { return reduced_specification(); }
-  Galerkin(const Teuchos::ParameterList&, const Context& context)
+  Galerkin(const Teuchos::ParameterList& block, const Context& context)
       : PetrovGalerkin(full_size_parts(context, [] { return std::make_unique<GalerkinTestBasis>(); }),
-                       NewtonSettings(context.input.sublist("time").sublist("newton"))) {}
+                       NewtonSettings(context.input.sublist("time").sublist("newton")), factors_of(block)) {}
 };
 
 KILN_REGISTER(Method, Galerkin, "galerkin",

@@ -148,9 +148,9 @@ class Gnat : public PetrovGalerkin {
   }
 
  private:
-  Gnat(const Teuchos::ParameterList&, const Context& context, nlohmann::json facts)
+  Gnat(const Teuchos::ParameterList& block, const Context& context, nlohmann::json facts)
       : PetrovGalerkin(sample_mesh_parts(context, facts),
-                       NewtonSettings(context.input.sublist("time").sublist("newton"))),
+                       NewtonSettings(context.input.sublist("time").sublist("newton")), factors_of(block)),
         facts_(std::move(facts)) {}
 
   nlohmann::json facts_;

@@ -7,9 +7,9 @@ namespace {
 class Lspg : public PetrovGalerkin {
  public:
   static Specification specification() { return reduced_specification(); }
-  Lspg(const Teuchos::ParameterList&, const Context& context)
+  Lspg(const Teuchos::ParameterList& block, const Context& context)
       : PetrovGalerkin(full_size_parts(context, [] { return std::make_unique<LspgTestBasis>(); }),
-                       NewtonSettings(context.input.sublist("time").sublist("newton"))) {}
+                       NewtonSettings(context.input.sublist("time").sublist("newton")), factors_of(block)) {}
 };
 
 KILN_REGISTER(Method, Lspg, "lspg", "least-squares Petrov-Galerkin on the whole domain: the residual is minimal");

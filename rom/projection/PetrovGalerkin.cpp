@@ -15,11 +15,11 @@ constexpr double round_off = 1e-9;
 
 }  // namespace
 
-PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings)
+PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings, Projection::Factors factors)
     : particles_(std::move(parts.particles)), positions_(parts.positions), settings_(settings) {
   for (Window& window : parts.windows) {
-    windows_.push_back(
-        {window.end, std::make_unique<Projection>(std::move(window.projection), settings), std::move(window.held)});
+    windows_.push_back({window.end, std::make_unique<Projection>(std::move(window.projection), settings, factors),
+                        std::move(window.held)});
   }
   const TrialSpace& last = windows_.back().projection->trial();
   coordinates_ = Teuchos::rcp(

@@ -28,7 +28,7 @@ class PetrovGalerkin : public Method {
     ConstPositionView positions;
   };
 
-  PetrovGalerkin(Parts parts, const NewtonSettings& settings);
+  PetrovGalerkin(Parts parts, const NewtonSettings& settings, Projection::Factors factors = Projection::Factors::kept);
 
   Teuchos::RCP<const Map> coordinates() const override { return coordinates_; }
   LocalIndex row_size() const override { return projection().row_size(); }

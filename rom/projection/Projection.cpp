@@ -35,7 +35,7 @@ void copy(const ConstVectorView& from, const VectorView& to) { std::copy_n(from.
 
 }  // namespace
 
-Projection::Projection(Parts parts, const NewtonSettings& settings)
+Projection::Projection(Parts parts, const NewtonSettings& settings, Factors factors)
     : model_(std::move(parts.model)),
       trial_(std::move(parts.trial)),
       test_basis_(std::move(parts.test)),
@@ -43,6 +43,7 @@ Projection::Projection(Parts parts, const NewtonSettings& settings)
       communicator_(model_->rows()->getComm()),
       first_(trial_->first()),
       size_(trial_->size()),
+      when_factored_(factors),
       jacobian_(*model_, settings.jacobian) {
   const std::size_t components = model_->fields().size();
   const std::size_t rows = model_->rows()->getMyGlobalIndices().extent(0) * components;
@@ -94,9 +95,20 @@ bool Projection::linearised_for(double alpha, double gamma) const {
   return frozen_.age >= 0 && frozen_.alpha == alpha && frozen_.gamma == gamma && (trial_->affine() || gamma != 0.0);
 }
 
+void Projection::factor(double time) {
+  test_ = test_basis_->form(tangent_rows_, jacobian_tangent_, *communicator_);
+  dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test_, jacobian_tangent_, 0.0, small_);
+  dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
+  reciprocal_condition_ = factors_.factor(small_);
+  if (!(reciprocal_condition_ > 1e-15)) {
+    throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows",
+                          time);
+  }
+}
+
 void Projection::linearise(double alpha, double gamma, ConstVectorView x, double time) {
   const ConstMatrixView tangent = trial_->tangent(x);
-  const ConstMatrixView tangent_rows = dense::row_block(tangent, 0, row_size_);
+  tangent_rows_ = dense::row_block(tangent, 0, row_size_);
   if (gamma != 0.0) {
     trial_->state(x, state_);
     jacobian_.take(state_, time);
@@ -105,17 +117,10 @@ void Projection::linearise(double alpha, double gamma, ConstVectorView x, double
   for (std::size_t k = 0; k < tangent.extent(1); ++k) {
     for (LocalIndex i = 0; i < row_size_; ++i) {
       const double rate_part = gamma != 0.0 ? gamma * jacobian_tangent_(i, k) : 0.0;
-      jacobian_tangent_(i, k) = alpha * tangent_rows(i, k) - rate_part;
+      jacobian_tangent_(i, k) = alpha * tangent_rows_(i, k) - rate_part;
     }
   }
-  test_ = test_basis_->form(tangent_rows, jacobian_tangent_, *communicator_);
-  dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test_, jacobian_tangent_, 0.0, small_);
-  dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
-  reciprocal_condition_ = factors_.factor(small_);
-  if (!(reciprocal_condition_ > 1e-15)) {
-    throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows",
-                          time);
-  }
+  factor(time);
   if (frozen_.x.extent(0) != x.extent(0)) frozen_.x = VectorView("kiln::rom::frozen coordinates", x.extent(0));
   copy(x, frozen_.x);
   frozen_.alpha = alpha;
@@ -186,6 +191,7 @@ SolveReport Projection::solve(const StepResidual& residual, VectorView x, Vector
   report.first_norm = norm;
   const double goal = settings_.tolerance * norm;
   while (norm > goal && report.iterations < settings_.iterations) {
+    if (when_factored_ == Factors::every_iteration) factor(residual.time);
     copy(g_, step_);
     factors_.solve(step_);
     move(x, -1.0);

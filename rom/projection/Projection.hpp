@@ -38,7 +38,14 @@ class Projection {
     std::unique_ptr<TestBasis> test;    ///< on its rows
   };
 
-  Projection(Parts parts, const NewtonSettings& settings);
+  /// When Ψ and the factors of Ψᵀ J̃Φ are formed.
+  enum class Factors {
+    kept,            ///< with each new J̃Φ
+    every_iteration  ///< in each iteration anew from the same J̃Φ, as Algorithm 1 is printed: dearer, and no other
+                     ///< result
+  };
+
+  Projection(Parts parts, const NewtonSettings& settings, Factors factors = Factors::kept);
 
   Model& model() const { return *model_; }
   const TrialSpace& trial() const { return *trial_; }
@@ -67,6 +74,8 @@ class Projection {
 
  private:
   void linearise(double alpha, double gamma, ConstVectorView x, double time);
+  /// Ψ and the factors of Ψᵀ J̃Φ, from J̃Φ.
+  void factor(double time);
   bool linearised_for(double alpha, double gamma) const;
   /// Evaluates state and rate for x; f: rows × components. Fills residual_ and g_ = Ψᵀr; returns ‖g_‖.
   double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
@@ -88,6 +97,7 @@ class Projection {
   Teuchos::RCP<const Communicator> communicator_;
   LocalIndex row_size_;
   int first_, size_;
+  Factors when_factored_;
   JacobianAction jacobian_;
   std::function<void(ConstVectorView)> observer_;
 
@@ -97,9 +107,10 @@ class Projection {
     double alpha = 0.0, gamma = 0.0, time = 0.0;
     int age = -1;  ///< steps it has served; −1: not taken yet
   } frozen_;
-  MatrixView jacobian_tangent_;  ///< J̃Φ
-  MatrixView small_;             ///< Ψᵀ J̃Φ, overwritten by its factors
-  ConstMatrixView test_;         ///< Ψ
+  ConstMatrixView tangent_rows_;  ///< Φ where J̃Φ was taken
+  MatrixView jacobian_tangent_;   ///< J̃Φ
+  MatrixView small_;              ///< Ψᵀ J̃Φ, overwritten by its factors
+  ConstMatrixView test_;          ///< Ψ
   dense::LuFactors factors_;
   double reciprocal_condition_ = 1.0;
   long long linearisations_ = 0;

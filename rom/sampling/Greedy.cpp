@@ -97,7 +97,8 @@ Specification Greedy::specification() {
   s.integer("samples", "particles to choose; left out: samples_per_mode times the residual basis' rank")
       .at_least(1)
       .optional();
-  s.real("samples_per_mode", "particles a residual mode; 1: interpolation, as the report has it, which amplifies errors")
+  s.real("samples_per_mode",
+         "particles a residual mode; 1: interpolation, as the report has it, which amplifies errors")
       .at_least(1)
       .defaults_to(2.0);
   s.integers("seeds", "ids of particles that are chosen in any case").optional();
@@ -105,7 +106,8 @@ Specification Greedy::specification() {
 }
 
 Greedy::Greedy(const Teuchos::ParameterList& list, const NoContext&)
-    : path_(list.name()), samples_(list.isParameter("samples") ? list.get<int>("samples") : 0),
+    : path_(list.name()),
+      samples_(list.isParameter("samples") ? list.get<int>("samples") : 0),
       samples_per_mode_(list.get<double>("samples_per_mode")) {
   if (!list.isParameter("seeds")) return;
   for (const int seed : list.get<Teuchos::Array<int>>("seeds")) seeds_.push_back(seed);

@@ -11,6 +11,7 @@ class SnapshotObserver : public Observer {
   /// Both must outlive the observer. Takes u0 from the method.
   SnapshotObserver(Method& method, Snapshots& snapshots, int every);
 
+  void begin() override {}
   void observe(const Moment& moment) override;
   void finish(RunReport& report) override;
 

@@ -16,6 +16,7 @@ namespace {
 class UnknownRecord : public Observer {
  public:
   explicit UnknownRecord(const std::vector<int>& steps) : steps_(steps) {}
+  void begin() override {}
   void observe(const Moment& moment) override {
     if (!std::binary_search(steps_.begin(), steps_.end(), moment.step)) return;
     unknowns_.emplace_back("kiln::rom::unknown", moment.x.extent(0));
@@ -112,6 +113,7 @@ TrialErrors trial_run(const Teuchos::ParameterList& input, const std::filesystem
   Teuchos::ParameterList online(input);
   online.remove("method");
   online.sublist("method").set<std::string>("type", "gnat").set("file", file.string());
+  online.sublist("method").set<std::string>("factors", "kept");
   const std::unique_ptr<Method> method =
       Registry<Method>::create(online.sublist("method"), Method::Context{online, communicator});
   const std::unique_ptr<TimeScheme> scheme =

@@ -18,6 +18,7 @@ class QueryRecord : public Observer {
  public:
   /// ids: ascending, all among the method's particles.
   QueryRecord(Method& method, const std::vector<GlobalIndex>& ids);
+  void begin() override {}
   void observe(const Moment& moment) override;
   void finish(RunReport&) override {}
   /// One row a step observed, ids × components; the same on every rank. Collective.

@@ -216,6 +216,7 @@ Teuchos::ParameterList input_of(const Case& values) {
   solver.set("restart", 100);
   input.sublist("method").setName("method");
   input.sublist("method").set("type", values.method);
+  input.sublist("method").set("factors", std::string("kept"));
   Teuchos::ParameterList& reduction = input.sublist("reduction");
   reduction.setName("reduction");
   reduction.set("type", std::string("procedure ii"));

@@ -269,6 +269,18 @@ TEST(PetrovGalerkin, StartsFromTheNearestStateWhereTheReferenceIsAnother) {
   for (LocalIndex i = 0; i < method.row_size(); ++i) EXPECT_NEAR(u(i), initial(i), 1e-13);
 }
 
+TEST(PetrovGalerkin, NewFactorsInEveryIterationChangeNothing) {
+  Case values;
+  values.steps = 10;
+  values.refresh = 3;
+  const std::vector<double> kept = march(*of_kind("lspg", values, 8, world()), values);
+  const std::shared_ptr<Model> model = model_of(values, world());
+  PetrovGalerkin method(test::parts_of(model, values, test::cosines(*model->sources(), 1, values.count, 8),
+                                       {{1.0, 0, 8}}, test::lspg_test),
+                        newton_of(values), kiln::Projection::Factors::every_iteration);
+  EXPECT_EQ(largest_difference(march(method, values), kept), 0.0);
+}
+
 TEST(PetrovGalerkin, LineSearchTakesTheSameSolution) {
   Case values;
   values.steps = 10;

@@ -37,6 +37,7 @@ TEST(TimeSpan, RefusesAnEndBetweenSteps) {
 
 class Recorder : public Observer {
  public:
+  void begin() override {}
   void observe(const Moment& moment) override {
     steps.push_back(moment.step);
     times.push_back(moment.time);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 
+#include "framework/base/Error.hpp"
 #include "framework/files/RunFile.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 
@@ -168,6 +169,77 @@ TEST(Compare, JsonDiffersInNumberKeyTypeAndLength) {
   expect_different(compare(gold, json("e.json", R"({"x": {}, "name": ""})"), 1.0, 1.0), "x.y is missing on the second");
   expect_different(compare(gold, json("f.json", R"({"x": {"y": ["1", 2.5]}, "name": ""})"), 1.0, 1.0), "x.y[0] is");
   expect_different(compare(gold, json("g.json", "{"), 1.0, 1.0), "no readable JSON");
+}
+
+TEST(Compare, FieldsHaveTolerancesOfTheirOwn) {
+  TestFolder folder;
+  write_text(folder / "a.csv", "step,hot [K],cold [K],rate\n0,1000,300,0\n");
+  write_text(folder / "b.csv", "step,hot [K],cold [K],rate\n0,1001,300.003,1e-9\n");
+  const auto compared = [&](const std::vector<FieldTolerance>& own) {
+    return compare(folder / "a.csv", folder / "b.csv", 0.0, 0.0, own);
+  };
+  EXPECT_TRUE(compared({{"hot [K]", 1.1e-3, 0.0}, {"cold [K]", 1.1e-5, 0.0}, {"rate", 1e-6, 1.0}}).same());
+  expect_different(compared({{"hot [K]", 1.1e-3, 0.0}, {"rate", 1e-6, 1.0}}), "DIFFERS cold [K]");
+  expect_different(compared({{"*[K]", 1.1e-3, 0.0}}), "DIFFERS rate");
+  expect_different(compared({{"*[K]", 1.1e-3, 0.0}, {"rate", 1e-6, 0.0}}), "DIFFERS rate");
+  EXPECT_TRUE(compared({{"*[K]", 1.1e-3, 0.0}, {"r*e", 1e-6, 1.0}}).same());
+  // Of several the first one counts, and one that none is left for is a mistake like one that is misspelt.
+  expect_different(compared({{"cold [K]", 1e-6, 0.0}, {"*", 1.0, 1.0}}), "1 beyond 1e-06");
+  expect_different(compared({{"*", 1.0, 1.0}, {"hot [K]", 1.0, 1.0}}), "no field is called 'hot [K]'");
+  expect_different(compared({{"*", 1.0, 1.0}, {"hto [K]", 1.0, 1.0}}), "no field is called 'hto [K]'");
+  EXPECT_THROW(compared({{"*", -1.0, 0.0}}), std::invalid_argument);
+  EXPECT_THROW(compared({{"*", 1.0, std::nan("")}}), std::invalid_argument);
+}
+
+TEST(Compare, ReadsTolerancesOfFields) {
+  const FieldTolerance plain = field_tolerance("run.h5:/temperature=1e-8");
+  EXPECT_EQ(plain.fields, "run.h5:/temperature");
+  EXPECT_EQ(plain.tolerance, 1e-8);
+  EXPECT_EQ(plain.floor, 0.0);
+  const FieldTolerance floored = field_tolerance("probes.csv:a=b, c [K]=1e-8,300");
+  EXPECT_EQ(floored.fields, "probes.csv:a=b, c [K]");
+  EXPECT_EQ(floored.tolerance, 1e-8);
+  EXPECT_EQ(floored.floor, 300.0);
+  for (const char* wrong : {"", "a", "=1", "a=", "a=1x", "a=-1", "a=nan", "a=inf", "a=1,", "a=1,-2", "a=1,2,3"}) {
+    EXPECT_THROW(field_tolerance(wrong), InputError) << wrong;
+  }
+}
+
+TEST(Compare, PatternsOfFields) {
+  const auto matches = [](const char* pattern, const char* field) { return FieldTolerance{pattern}.matches(field); };
+  EXPECT_TRUE(matches("a.csv:x [m]", "a.csv:x [m]"));
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("*.csv:*", "a.csv:x [m]"));
+  EXPECT_TRUE(matches("*a*a", "banana"));
+  EXPECT_FALSE(matches("*a*n", "banana"));
+  EXPECT_FALSE(matches("banan", "banana"));
+  EXPECT_FALSE(matches("banana", "banan"));
+  EXPECT_FALSE(matches("", "a"));
+}
+
+TEST(Compare, FilesOfSubfoldersCount) {
+  TestFolder folder;
+  for (const char* side : {"a", "b"}) {
+    std::filesystem::create_directories(folder / side + "/inner");
+    write_text(folder / side + "/top.json", R"({"x": 1})");
+    write_text(folder / side + "/inner/deep.json", R"({"x": 1})");
+  }
+  EXPECT_EQ(compare(folder / "a", folder / "b", 0.0, 0.0).compared(), 2u);
+  write_text(folder / "b/inner/deep.json", R"({"x": 2})");
+  expect_different(compare(folder / "a", folder / "b", 0.1, 0.0), "DIFFERS inner/deep.json:x");
+  std::filesystem::remove(folder / "b/inner/deep.json");
+  expect_different(compare(folder / "a", folder / "b", 0.1, 0.0), "inner/deep.json is missing in " + (folder / "b"));
+}
+
+TEST(Compare, EachFileMustHaveSomethingToCompare) {
+  TestFolder folder;
+  for (const char* side : {"a", "b"}) {
+    std::filesystem::create_directories(folder / side);
+    write_text(folder / side + "/full.json", R"({"x": 1})");
+    write_text(folder / side + "/empty.csv", "step,a\n");
+  }
+  expect_different(compare(folder / "a", folder / "b", 0.0, 0.0),
+                   "nothing was compared of " + (folder / "a/empty.csv"));
 }
 
 TEST(Compare, RefusesAToleranceThatIsNone) {

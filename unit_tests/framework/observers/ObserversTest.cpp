@@ -43,6 +43,7 @@ Teuchos::ParameterList probe_list(const std::vector<std::pair<std::string, Point
 }
 
 void run(Observer& observer, const StandInMethod& method, int first_step, int end_step) {
+  observer.begin();
   for (int step = first_step == 0 ? 0 : first_step + 1; step <= end_step; ++step) {
     observer.observe({step, last_step, step * step_length, method.unknown(step), {}});
   }
@@ -226,6 +227,7 @@ TEST(FieldObserver, KeepsTheCoordinatesOfAReducedMethod) {
   list.set("every", 4);
   {
     FieldObserver observer(list, context_of(method, folder));
+    observer.begin();
     for (int step = 0; step <= last_step; ++step) {
       observer.observe({step, last_step, step * step_length, ReducedStandIn::reduced_unknown(step), {}});
     }
