@@ -17,10 +17,10 @@ namespace kiln {
 struct LatticeBox {
   static constexpr LocalIndex none = -1;
 
-  LatticePlace lower;   ///< of the rows
-  LatticePlace lanes;   ///< bricks along each axis; their product is lane_count
-  LatticePlace length;  ///< places of a brick along each axis
-  LatticePlace reach;   ///< of the stencil
+  LatticePlace lower{};   ///< of the rows
+  LatticePlace lanes{};   ///< bricks along each axis; their product is lane_count
+  LatticePlace length{};  ///< places of a brick along each axis
+  LatticePlace reach{};   ///< of the stencil
   /// Source at each place of each vector, lane by lane; none: no particle, or none that a row of this rank needs.
   std::vector<LocalIndex> sources;
   /// Vectors that hold rows, in an order in which neighbours stay in the cache.
