@@ -63,11 +63,16 @@ void arrangement(std::vector<Figure>& figures, const std::string& name, const He
   figures.push_back({prefix + ".diagonal_to_rate", "x", ratios(seconds[2], seconds[1])});
 }
 
-/// A sample mesh of single particles far from each other, as hyper-reduction evaluates it.
-void sample_mesh(std::vector<Figure>& figures, const HeatModel& model) {
+/// A sample mesh as hyper-reduction evaluates it: 120 rows in five bricks of 4 x 3 x 2.
+void sample_mesh(std::vector<Figure>& figures, const HeatModel& model, const BenchCase& part) {
   std::vector<GlobalIndex> rows;
-  for (GlobalIndex id = 17; id < static_cast<GlobalIndex>(model.rows()->getGlobalNumElements()); id += 271) {
-    rows.push_back(id);
+  for (int brick = 0; brick < 5; ++brick) {
+    for (int n = 0; n < 24; ++n) {
+      const int x = 10 + 18 * brick + n % 4;
+      const int y = 20 + n / 4 % 3;
+      const int z = part.count[2] - 1 - n / 12;
+      rows.push_back(x + static_cast<GlobalIndex>(part.count[0]) * (y + part.count[1] * z));
+    }
   }
   const auto sample = model.sampled(rows);
   const VectorView u = weld_state(model);
@@ -118,7 +123,7 @@ std::vector<Figure> one_rank(const std::string& folder) {
   arrangement(
       figures, "cloud", *model,
       std::max(0.5 * pairs / pairs_per_second, 0.5 * pairs * (sizeof(double) + sizeof(LocalIndex)) / bandwidth));
-  sample_mesh(figures, *model);
+  sample_mesh(figures, *model, part);
   return figures;
 }
 
@@ -194,21 +199,53 @@ std::vector<Figure> scale() {
   return figures;
 }
 
+/// Evaluates with one kernel on a small part, for an instruction counter; prints how many pairs it went through.
+void count(const std::string& kernel, int repeats, const std::string& folder) {
+  const auto communicator = Tpetra::getDefaultComm();
+  const BenchCase part = {{40, 30, 14}};
+  const auto model = kernel == "lattice" ? part.lattice(communicator) : part.cloud(communicator, folder + "/count.csv");
+  PlainRate plain(*model);
+  const auto rows = compressed_rows(model->domain());
+  const VectorView u = weld_state(*model);
+  const VectorView f("f", model->rows()->getNodeNumElements());
+  const ThermalStateView states("states", u.extent(0) + 1);
+  for (std::size_t j = 0; j < u.extent(0); ++j) {
+    states(j) = thermal_state(model->material(), u(j), model->domain().masses(j));
+  }
+  states(u.extent(0)) = nobody;
+  for (int n = 0; n < repeats; ++n) {
+    if (kernel == "plain") {
+      plain.evaluate(u);
+    } else if (kernel == "rows") {
+      rows->sum(PairQuantity::flux, states, f);
+    } else {
+      model->rate(u, no_beam, f);
+    }
+  }
+  fmt::print("pairs {}\n", plain.pairs() * static_cast<std::size_t>(repeats));
+}
+
 }  // namespace
 }  // namespace kiln::bench
 
-/// bench_fom one|ranks|scale FOLDER: writes FOLDER/<what>.json.
+/// bench_fom one|ranks|scale FOLDER: writes FOLDER/<what>.json; bench_fom count-KERNEL FOLDER REPEATS: evaluates only.
 int main(int argc, char** argv) {
   Tpetra::ScopeGuard guard(&argc, &argv);
-  if (argc != 3) {
-    fmt::print(stderr, "bench_fom: {} arguments; expected: one|ranks|scale FOLDER\n", argc - 1);
+  const std::string what = argc > 1 ? argv[1] : "";
+  const bool counting = what.rfind("count-", 0) == 0;
+  if (argc != (counting ? 4 : 3)) {
+    fmt::print(stderr, "bench_fom: {} arguments; expected: one|ranks|scale FOLDER or count-KERNEL FOLDER REPEATS\n",
+               argc - 1);
     return EXIT_FAILURE;
   }
-  const std::string what = argv[1];
   const std::string folder = argv[2];
   const auto communicator = Tpetra::getDefaultComm();
   try {
     std::vector<kiln::bench::Figure> figures;
+    if (counting) {
+      kiln::bench::count(what.substr(6), std::stoi(argv[3]), folder);
+      return EXIT_SUCCESS;
+    }
     if (what == "one") {
       figures = kiln::bench::one_rank(folder);
     } else if (what == "ranks") {

@@ -120,6 +120,7 @@ class LatticeSweep final : public PairLayout {
       empty.insert(empty.end(), lane_count, nobody.volume);
     }
     lattice_.vectors = view_of<VectorView>(empty, "lattice states");
+    if (stencil.mirrored) own_images_ = compressed_rows(domain);
   }
 
   const char* name() const override { return "lattice sweep"; }
@@ -130,6 +131,8 @@ class LatticeSweep final : public PairLayout {
                sizeof(LocalIndex);
   }
   void sum(PairQuantity quantity, ConstThermalStateView states, VectorView sums) const override {
+    // A particle's own image has its temperature always: nothing flows, but the stencil would count a conductance.
+    if (quantity == PairQuantity::conductance && own_images_) return own_images_->sum(quantity, states, sums);
     const LatticeRows lattice = lattice_;
     Kokkos::parallel_for(
         "kiln::sph::fill lattice", RangePolicy(0, static_cast<LocalIndex>(lattice.filled.extent(0))),
@@ -143,6 +146,7 @@ class LatticeSweep final : public PairLayout {
 
  private:
   LatticeRows lattice_;
+  std::unique_ptr<PairLayout> own_images_;  ///< with mirrors: the listed pairs, which have none
 };
 
 }  // namespace
