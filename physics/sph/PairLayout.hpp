@@ -25,8 +25,7 @@ inline constexpr ThermalState<double> nobody = {0.0, 1.0, 0.0, 1.0};
 /// The fastest layout for these particles on this execution space.
 std::unique_ptr<PairLayout> pair_layout(const HeatDomain& domain);
 
-/// Each row's neighbours and weights one after the other, as the domain has them: for any particles, any rows, and any
-/// execution space.
+/// Each row's neighbours and weights one after the other: for any particles, any rows, and any execution space.
 std::unique_ptr<PairLayout> compressed_rows(const HeatDomain& domain);
 
 /// Each pair of two rows once, for both of them: half of the memory to read. Where rows are summed one after the other

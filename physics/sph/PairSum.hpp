@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Kokkos_Core.hpp>
-#include <type_traits>
 
 #include "physics/sph/Lanes.hpp"
 #include "physics/sph/ThermalState.hpp"
@@ -49,48 +48,10 @@ KOKKOS_FORCEINLINE_FUNCTION PairTerm<Scalar> pair_term(const Scalar& u_i, const 
   }
 }
 
-#ifdef KILN_LANES
-/// Sum over a row's pairs, sixteen at a time with one divide for each two. The last ones are made up to eight or
-/// sixteen with pairs of no weight.
-template <PairQuantity quantity>
-inline double pair_lanes(const ThermalState<double>* states, const ThermalState<double>& i, const LocalIndex* sources,
-                         const double* weights, LocalIndex count) {
-  const Lanes u_i = all_lanes(i.temperature);
-  const Lanes resistivity_i = all_lanes(i.resistivity);
-  const auto term = [&](const LocalIndex* source, const double* weight) {
-    const StateLanes j = state_lanes(states, source);
-    return pair_term<quantity>(u_i, resistivity_i, j.temperature, j.resistivity, j.volume).weighted(lanes_at(weight));
-  };
-  Lanes sum = {};
-  LocalIndex pair = 0;
-  for (; pair + 16 <= count; pair += 16) {
-    // The hardware's own prefetching stops at each 4 KiB page of these two streams: a third of the time.
-    __builtin_prefetch(weights + pair + 512);
-    __builtin_prefetch(weights + pair + 520);
-    __builtin_prefetch(sources + pair + 1024);
-    sum += (term(sources + pair, weights + pair) + term(sources + pair + 8, weights + pair + 8)).value();
-  }
-  if (pair < count) {
-    LocalIndex last_sources[16];
-    double last_weights[16];
-    for (int k = 0; k < 16; ++k) {
-      last_sources[k] = sources[pair + k < count ? pair + k : pair];
-      last_weights[k] = pair + k < count ? weights[pair + k] : 0.0;
-    }
-    const PairTerm<Lanes> first = term(last_sources, last_weights);
-    sum += (count - pair > 8 ? first + term(last_sources + 8, last_weights + 8) : first).value();
-  }
-  return lane_sum(sum);
-}
-#endif
-
-/// Sum over a row's pairs, in their order up to lanes: the same bits wherever the row lives.
+/// Sum over a row's pairs, in their order.
 template <PairQuantity quantity = PairQuantity::flux, class Scalar>
 KOKKOS_INLINE_FUNCTION Scalar pair_sum(const ThermalState<Scalar>* states, const ThermalState<Scalar>& i,
                                        const LocalIndex* sources, const double* weights, LocalIndex count) {
-#ifdef KILN_LANES
-  if constexpr (std::is_same_v<Scalar, double>) return pair_lanes<quantity>(states, i, sources, weights, count);
-#endif
   Scalar sum = 0.0;
   for (LocalIndex pair = 0; pair < count; ++pair) {
     const ThermalState<Scalar>& j = states[sources[pair]];
@@ -99,6 +60,32 @@ KOKKOS_INLINE_FUNCTION Scalar pair_sum(const ThermalState<Scalar>* states, const
   }
   return sum;
 }
+
+#ifdef KILN_LANES
+/// The same for a number of pairs that is a multiple of lane_count: sixteen at a time, one divide for each two.
+template <PairQuantity quantity>
+inline double pair_sum_by_lanes(const ThermalState<double>* states, const ThermalState<double>& i,
+                                const LocalIndex* sources, const double* weights, LocalIndex count) {
+  const Lanes u_i = all_lanes(i.temperature);
+  const Lanes resistivity_i = all_lanes(i.resistivity);
+  const auto term = [&](LocalIndex pair) {
+    const StateLanes j = state_lanes(states, sources + pair);
+    return pair_term<quantity>(u_i, resistivity_i, j.temperature, j.resistivity, j.volume)
+        .weighted(lanes_at(weights + pair));
+  };
+  Lanes sum = {};
+  LocalIndex pair = 0;
+  for (; pair + 2 * lane_count <= count; pair += 2 * lane_count) {
+    // The hardware's own prefetching stops at each 4 KiB page of these two streams: a third of the time.
+    __builtin_prefetch(weights + pair + 512);
+    __builtin_prefetch(weights + pair + 520);
+    __builtin_prefetch(sources + pair + 1024);
+    sum += (term(pair) + term(pair + lane_count)).value();
+  }
+  if (pair < count) sum += term(pair).value();
+  return lane_sum(sum);
+}
+#endif
 
 /// f_i of Eq. 11 in K/s from Σ_j of PairQuantity::flux. With V_j = m_j/ρ_j and 4 k_i k_j/(k_i + k_j) = 4/(1/k_i +
 /// 1/k_j) it is the power that reaches the particle, 4 V_i Σ_j (…) + q_i A_i, over its heat capacity m_i c_i.
