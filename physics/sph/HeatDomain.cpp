@@ -140,8 +140,9 @@ HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings
   check_pairs(cloud, around, candidate_positions, targets, pairs, settings, *communicator);
 
   HeatDomain domain;
-  domain.weights = pair_weights(pairs, candidate_positions, targets, settings.kernel, settings.support,
-                                settings.mirrored ? cloud.faces : std::nullopt);
+  const std::optional<Box> mirrors = settings.mirrored ? cloud.faces : std::nullopt;
+  domain.weights = pair_weights(pairs, candidate_positions, targets, settings.kernel, settings.support, mirrors);
+  domain.stencil = lattice_stencil(cloud.positions, settings.kernel, settings.support, mirrors);
 
   // From candidates to sources: own particles first, then those of the others that a pair refers to.
   constexpr LocalIndex unused = -1;

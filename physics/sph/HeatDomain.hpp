@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <optional>
 #include <vector>
 
 #include "physics/sph/Kernel.hpp"
+#include "physics/sph/LatticeStencil.hpp"
 #include "physics/sph/MaterialTable.hpp"
 #include "physics/sph/Neighbours.hpp"
 #include "physics/sph/Particles.hpp"
@@ -24,6 +26,8 @@ struct HeatDomain {
   VectorView areas;                 ///< A_i in m² of the rows
   NeighbourList pairs;              ///< of the rows, as local indices into the sources
   VectorView weights;               ///< of the pairs, (dW/dr)/r in 1/m⁵
+  /// When the whole part stands on a lattice; a sample mesh has none.
+  std::optional<LatticeStencil> stencil;
 };
 
 /// How the pairs of a whole part are made.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "physics/sph/HeatModel.hpp"
+#include "physics/sph/PairRows.hpp"
 
 namespace kiln {
 namespace {
@@ -37,20 +38,14 @@ void HeatModel::rate_jacobian_diagonal(ConstVectorView u, double time, VectorVie
   check("rate_jacobian_diagonal", u.extent(0), diagonal.extent(0));
   static_cast<void>(time);  // the absorbed power does not depend on the temperature when properties stand still
   update_states(u);
+  layout_->sum(PairQuantity::conductance, states_, sums_);
   const auto states = states_;
-  const auto offsets = domain_.pairs.offsets;
-  const auto neighbours = domain_.pairs.neighbours;
-  const auto weights = domain_.weights;
+  const auto sums = sums_;
   const auto masses = domain_.masses;
   Kokkos::parallel_for(
       "kiln::sph::rate jacobian diagonal", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {
-        const ThermalState<double> own = states(i);
-        double sum = 0.0;
-        for (std::size_t pair = offsets(i); pair < offsets(i + 1); ++pair) {
-          const ThermalState<double>& j = states(neighbours(pair));
-          sum += weights(pair) * j.volume / (own.resistivity + j.resistivity);
-        }
-        diagonal(i) = 4.0 * own.volume * sum / (masses(i) * own.specific_heat);
+        const ThermalState<double>& own = states(i);
+        diagonal(i) = 4.0 * own.volume * sums(i) / (masses(i) * own.specific_heat);
       });
 }
 
@@ -102,6 +97,41 @@ struct HeatModel::JacobianRow {
   }
 };
 
+/// What the kernels of ∂f/∂u read.
+struct HeatModel::JacobianRows {
+  PairRows pairs;
+  ConstThermalStateView states;
+  Kokkos::View<const ThermalSlopes*, Device> slopes;
+  ConstVectorView masses;
+  ConstVectorView absorbed;
+
+  explicit JacobianRows(const HeatModel& model)
+      : pairs(model.domain_),
+        states(model.states_),
+        slopes(model.slopes_),
+        masses(model.domain_.masses),
+        absorbed(model.absorbed_) {}
+
+  KOKKOS_INLINE_FUNCTION JacobianRow row(LocalIndex i) const {
+    return {states.data(), slopes.data(), pairs.sources_of(i), pairs.weights_of(i), i, masses(i)};
+  }
+
+  /// Calls visit(first pair, number of pairs, their ∂f_i/∂u_j) for a row's pairs, block by block, and returns
+  /// ∂f_i/∂u_i.
+  template <class Visit>
+  KOKKOS_INLINE_FUNCTION double visit_row(LocalIndex i, const Visit& visit) const {
+    JacobianRow entries_of = row(i);
+    double entries[block_pairs];
+    const LocalIndex count = pairs.count(i);
+    for (LocalIndex first = 0; first < count; first += block_pairs) {
+      const LocalIndex number = count - first < block_pairs ? count - first : block_pairs;
+      entries_of.off_diagonal(first, number, entries);
+      visit(first, number, entries);
+    }
+    return entries_of.diagonal(absorbed(i));
+  }
+};
+
 template <int Width>
 void HeatModel::apply_columns(ConstMatrixView v, MatrixView product, int first_column) const {
   const int columns = std::min<int>(Width, static_cast<int>(v.extent(1)) - first_column);
@@ -114,30 +144,18 @@ void HeatModel::apply_columns(ConstMatrixView v, MatrixView product, int first_c
       "kiln::sph::pack columns", RangePolicy(0, source_count()), KOKKOS_LAMBDA(LocalIndex j) {
         for (int c = 0; c < Width; ++c) packed(j, c) = c < columns ? v(j, first_column + c) : 0.0;
       });
-  const auto states = states_;
-  const auto slopes = slopes_;
-  const auto offsets = domain_.pairs.offsets;
-  const auto neighbours = domain_.pairs.neighbours;
-  const auto weights = domain_.weights;
-  const auto masses = domain_.masses;
-  const auto absorbed = absorbed_;
+  const JacobianRows rows(*this);
   Kokkos::parallel_for(
       "kiln::sph::apply rate jacobian", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {
-        const std::size_t begin = offsets(i);
-        const auto count = static_cast<LocalIndex>(offsets(i + 1) - begin);
-        JacobianRow row{states.data(), slopes.data(), neighbours.data() + begin, weights.data() + begin, i, masses(i)};
         double sums[Width] = {};
-        double entries[block_pairs];
-        for (LocalIndex first = 0; first < count; first += block_pairs) {
-          const LocalIndex pairs = count - first < block_pairs ? count - first : block_pairs;
-          row.off_diagonal(first, pairs, entries);
-          for (LocalIndex pair = 0; pair < pairs; ++pair) {
-            const double* source = &packed(row.neighbours[first + pair], 0);
+        const LocalIndex* sources = rows.pairs.sources_of(i);
+        const double diagonal = rows.visit_row(i, [&](LocalIndex first, LocalIndex number, const double* entries) {
+          for (LocalIndex pair = 0; pair < number; ++pair) {
+            const double* source = &packed(sources[first + pair], 0);
 #pragma omp simd
             for (int c = 0; c < Width; ++c) sums[c] += entries[pair] * source[c];
           }
-        }
-        const double diagonal = row.diagonal(absorbed(i));
+        });
         for (int c = 0; c < columns; ++c) product(i, first_column + c) = sums[c] + diagonal * packed(i, c);
       });
 }
@@ -199,25 +217,14 @@ Teuchos::RCP<const CrsMatrix> HeatModel::rate_jacobian_matrix(ConstVectorView u,
   const auto values = matrix_->getLocalMatrixDevice().values;
   const auto slots = matrix_slots_;
   const auto diagonal_slots = diagonal_slots_;
-  const auto states = states_;
-  const auto slopes = slopes_;
-  const auto offsets = domain_.pairs.offsets;
-  const auto neighbours = domain_.pairs.neighbours;
-  const auto weights = domain_.weights;
-  const auto masses = domain_.masses;
-  const auto absorbed = absorbed_;
+  const JacobianRows rows(*this);
   Kokkos::parallel_for(
       "kiln::sph::rate jacobian matrix", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {
-        const std::size_t begin = offsets(i);
-        const auto count = static_cast<LocalIndex>(offsets(i + 1) - begin);
-        JacobianRow row{states.data(), slopes.data(), neighbours.data() + begin, weights.data() + begin, i, masses(i)};
-        double entries[block_pairs];
-        for (LocalIndex first = 0; first < count; first += block_pairs) {
-          const LocalIndex pairs = count - first < block_pairs ? count - first : block_pairs;
-          row.off_diagonal(first, pairs, entries);
-          for (LocalIndex pair = 0; pair < pairs; ++pair) values(slots(begin + first + pair)) = entries[pair];
-        }
-        values(diagonal_slots(i)) = row.diagonal(absorbed(i));
+        const std::size_t begin = rows.pairs.first(i);
+        const double diagonal = rows.visit_row(i, [&](LocalIndex first, LocalIndex number, const double* entries) {
+          for (LocalIndex pair = 0; pair < number; ++pair) values(slots(begin + first + pair)) = entries[pair];
+        });
+        values(diagonal_slots(i)) = diagonal;
       });
   return matrix_;
 }

@@ -79,10 +79,13 @@ HeatModel::HeatModel(const Teuchos::ParameterList& list, const MaterialTable& ta
     : list_(list),
       table_(table),
       domain_(std::move(domain)),
+      layout_(pair_layout(domain_)),
       initial_temperature_(initial_temperature(list)),
       heat_source_(Registry<HeatSource>::create(list.sublist("heat_source"), {})),
       absorbed_("absorbed power", domain_.areas.extent(0)),
-      states_("thermal states", domain_.masses.extent(0)) {
+      sums_("pair sums", domain_.areas.extent(0)),
+      states_("thermal states", domain_.masses.extent(0) + 1) {
+  Kokkos::deep_copy(states_, nobody);
   parameters_.add("heat_source", heat_source_->parameters());
   const auto areas = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain_.areas);
   const auto places = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain_.positions);
@@ -144,18 +147,14 @@ void HeatModel::rate(ConstVectorView u, double time, VectorView f) const {
   check("rate", u.extent(0), f.extent(0));
   update_states(u);
   update_absorbed(time);
+  layout_->sum(PairQuantity::flux, states_, sums_);
   const auto states = states_;
-  const auto offsets = domain_.pairs.offsets;
-  const auto neighbours = domain_.pairs.neighbours;
-  const auto weights = domain_.weights;
+  const auto sums = sums_;
   const auto masses = domain_.masses;
   const auto absorbed = absorbed_;
   Kokkos::parallel_for(
-      "kiln::sph::rate", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {
-        const std::size_t first = offsets(i);
-        f(i) = heat_rate(states.data(), i, neighbours.data() + first, weights.data() + first,
-                         static_cast<LocalIndex>(offsets(i + 1) - first), masses(i), absorbed(i));
-      });
+      "kiln::sph::rate", RangePolicy(0, row_count()),
+      KOKKOS_LAMBDA(LocalIndex i) { f(i) = heat_rate(states(i), sums(i), masses(i), absorbed(i)); });
 }
 
 KILN_REGISTER(Model, HeatModel, "sph heat",

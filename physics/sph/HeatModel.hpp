@@ -8,7 +8,7 @@
 #include "physics/sph/HeatDomain.hpp"
 #include "physics/sph/HeatSource.hpp"
 #include "physics/sph/MaterialTable.hpp"
-#include "physics/sph/PairSum.hpp"
+#include "physics/sph/PairLayout.hpp"
 
 namespace kiln {
 
@@ -51,6 +51,8 @@ class HeatModel final : public Model {
   /// Particles, pairs and weights of this rank.
   const HeatDomain& domain() const { return domain_; }
   const MaterialTable& material() const { return table_; }
+  /// How this rank's pairs lie in memory.
+  const PairLayout& layout() const { return *layout_; }
 
  private:
   HeatModel(const Teuchos::ParameterList& list, const Context& context, const MaterialTable& table);
@@ -77,6 +79,7 @@ class HeatModel final : public Model {
   };
 
   struct JacobianRow;
+  struct JacobianRows;
   /// Columns of a multivector that go through the pairs together.
   static constexpr int block_width = 8;
   using PackedView = Kokkos::View<double* [block_width], Kokkos::LayoutRight, Device>;
@@ -84,15 +87,17 @@ class HeatModel final : public Model {
   Teuchos::ParameterList list_;
   MaterialTable table_;
   HeatDomain domain_;
+  std::unique_ptr<PairLayout> layout_;
   double initial_temperature_;
   std::unique_ptr<HeatSource> heat_source_;
   IndexView heated_;  ///< rows with a heated area
   PositionView heated_positions_;
 
   // Work arrays: the sampled model is evaluated millions of times and must not allocate.
-  VectorView heated_flux_;  ///< q in W/m² at heated_
-  VectorView absorbed_;     ///< q_i A_i in W of every row
-  Kokkos::View<ThermalState<double>*, Device> states_;
+  VectorView heated_flux_;                               ///< q in W/m² at heated_
+  VectorView absorbed_;                                  ///< q_i A_i in W of every row
+  VectorView sums_;                                      ///< of a PairQuantity, of every row
+  ThermalStateView states_;                              ///< of the sources and, last, nobody
   mutable Kokkos::View<ThermalSlopes*, Device> slopes_;  ///< made by the first Jacobian
   mutable PackedView packed_;
   mutable Teuchos::RCP<CrsMatrix> matrix_;

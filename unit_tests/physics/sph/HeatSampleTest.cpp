@@ -20,6 +20,16 @@ std::vector<GlobalIndex> some_rows() {
   return rows;
 }
 
+/// Of the largest value, about a hundred units in the last place: a lattice's weights come from its spacing, listed
+/// ones from the rounded positions.
+constexpr double round_off = 2e-14;
+
+double largest(const VectorView& values) {
+  double result = 0.0;
+  for (std::size_t i = 0; i < values.extent(0); ++i) result = std::max(result, std::abs(values(i)));
+  return result;
+}
+
 double tangent(GlobalIndex id, int column) { return std::cos(0.7 * static_cast<double>(id) + column); }
 
 /// J V for columns that depend on the particles' ids only.
@@ -35,7 +45,8 @@ MatrixView action_of(const Model& model, int columns) {
   return product;
 }
 
-/// rate, diagonal and action of a sampled model, bit for bit those of the whole one. `whole` lives on this rank alone.
+/// rate and diagonal of a sampled model, to the round-off that two layouts of the same pairs may differ by, and the
+/// action of its Jacobian, bit for bit: those of the whole one. `whole` lives on this rank alone.
 void expect_same(const Model& sample, const Model& whole) {
   const VectorView u = rough_state(whole);
   const VectorView f = rate_of(whole, u, time);
@@ -51,8 +62,8 @@ void expect_same(const Model& sample, const Model& whole) {
   for (std::size_t i = 0; i < sample_f.extent(0); ++i) {
     const GlobalIndex id = sample.rows()->getGlobalElement(static_cast<LocalIndex>(i));
     const LocalIndex row = whole.rows()->getLocalElement(id);
-    EXPECT_EQ(sample_f(i), f(row)) << "particle " << id;
-    EXPECT_EQ(sample_diagonal(i), diagonal(row)) << "particle " << id;
+    EXPECT_NEAR(sample_f(i), f(row), round_off * largest(f)) << "particle " << id;
+    EXPECT_NEAR(sample_diagonal(i), diagonal(row), round_off * largest(diagonal)) << "particle " << id;
     for (int c = 0; c < 3; ++c) EXPECT_EQ(sample_action(i, c), action(row, c)) << "particle " << id;
   }
 }
@@ -70,7 +81,7 @@ void expect_rows(const Model& sample, std::vector<GlobalIndex> rows) {
   }
 }
 
-TEST(HeatSample, EvaluatesItsRowsBitForBit) {
+TEST(HeatSample, EvaluatesItsRows) {
   const auto whole = HeatCase().model(alone());
   const auto sample = HeatCase().model()->sampled(some_rows());
   expect_rows(*sample, some_rows());

@@ -1,0 +1,98 @@
+#include "physics/sph/PairLayout.hpp"
+#include "physics/sph/PairRows.hpp"
+
+namespace kiln {
+namespace {
+
+#ifdef KILN_LANES
+constexpr LocalIndex multiple = lane_count;
+#else
+constexpr LocalIndex multiple = 1;
+#endif
+
+/// The domain's rows, each made up to a multiple of the lanes with pairs of no weight.
+HeatDomain whole_lanes(const HeatDomain& domain) {
+  const auto offsets = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.pairs.offsets);
+  const auto neighbours = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.pairs.neighbours);
+  const auto weights = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.weights);
+  const std::size_t rows = domain.areas.extent(0);
+  HeatDomain whole = domain;
+  whole.pairs.offsets = OffsetView("row offsets", rows + 1);
+  const auto whole_offsets = Kokkos::create_mirror_view(whole.pairs.offsets);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::size_t count = offsets(i + 1) - offsets(i);
+    whole_offsets(i + 1) = whole_offsets(i) + (count + multiple - 1) / multiple * multiple;
+  }
+  whole.pairs.neighbours = IndexView("row neighbours", whole_offsets(rows));
+  whole.weights = VectorView("row weights", whole_offsets(rows));
+  const auto whole_neighbours = Kokkos::create_mirror_view(whole.pairs.neighbours);
+  const auto whole_weights = Kokkos::create_mirror_view(whole.weights);
+  for (std::size_t i = 0; i < rows; ++i) {
+    std::size_t at = whole_offsets(i);
+    for (std::size_t pair = offsets(i); pair < offsets(i + 1); ++pair, ++at) {
+      whole_neighbours(at) = neighbours(pair);
+      whole_weights(at) = weights(pair);
+    }
+    for (; at < whole_offsets(i + 1); ++at) whole_neighbours(at) = static_cast<LocalIndex>(i);
+  }
+  Kokkos::deep_copy(whole.pairs.offsets, whole_offsets);
+  Kokkos::deep_copy(whole.pairs.neighbours, whole_neighbours);
+  Kokkos::deep_copy(whole.weights, whole_weights);
+  return whole;
+}
+
+template <PairQuantity quantity>
+void sum_rows(const PairRows& pairs, const ConstThermalStateView& states, const VectorView& sums) {
+  Kokkos::parallel_for(
+      "kiln::sph::sum compressed rows", RangePolicy(0, static_cast<LocalIndex>(sums.extent(0))),
+      KOKKOS_LAMBDA(LocalIndex i) {
+#ifdef KILN_LANES
+        sums(i) = pair_sum_by_lanes<quantity>(states.data(), states(i), pairs.sources_of(i), pairs.weights_of(i),
+                                              pairs.count(i));
+#else
+        sums(i) =
+            pair_sum<quantity>(states.data(), states(i), pairs.sources_of(i), pairs.weights_of(i), pairs.count(i));
+#endif
+      });
+}
+
+class CompressedRows final : public PairLayout {
+ public:
+  explicit CompressedRows(const HeatDomain& domain) : pairs_(whole_lanes(domain)) {}
+  const char* name() const override { return "compressed rows"; }
+  std::size_t bytes() const override {
+    return pairs_.offsets.span() * sizeof(std::size_t) + pairs_.neighbours.span() * sizeof(LocalIndex) +
+           pairs_.weights.span() * sizeof(double);
+  }
+  void sum(PairQuantity quantity, ConstThermalStateView states, VectorView sums) const override {
+    if (quantity == PairQuantity::flux) {
+      sum_rows<PairQuantity::flux>(pairs_, states, sums);
+    } else {
+      sum_rows<PairQuantity::conductance>(pairs_, states, sums);
+    }
+  }
+
+ private:
+  PairRows pairs_;
+};
+
+}  // namespace
+
+std::unique_ptr<PairLayout> compressed_rows(const HeatDomain& domain) {
+  return std::make_unique<CompressedRows>(domain);
+}
+
+std::unique_ptr<PairLayout> pair_layout(const HeatDomain& domain) {
+  if (auto lattice = lattice_sweep(domain)) return lattice;
+  // A sample mesh has few pairs between its own rows; listing those once would save nothing.
+  const auto rows = static_cast<LocalIndex>(domain.areas.extent(0));
+  const ConstIndexView neighbours = domain.pairs.neighbours;
+  std::size_t own = 0;
+  Kokkos::parallel_reduce(
+      "kiln::sph::count pairs of rows", Kokkos::RangePolicy<ExecutionSpace>(0, neighbours.extent(0)),
+      KOKKOS_LAMBDA(std::size_t pair, std::size_t & count) { count += neighbours(pair) < rows ? 1 : 0; }, own);
+  const bool mostly_own = 2 * own > neighbours.extent(0);
+  return mostly_own && ExecutionSpace().concurrency() == 1 ? half_list(domain) : compressed_rows(domain);
+}
+
+}  // namespace kiln
