@@ -62,7 +62,7 @@ class Case:
     @functools.cached_property
     def checked(self):
         """The input with all defaults, as `kiln check` prints it; full order, as others ask for their reduction."""
-        outcome = harness.kiln(HERE, "check", self.input, "--set", "method.type=fom")
+        outcome = harness.kiln(HERE, "check", self.input, "--set", "method={type: fom}")
         if outcome.status != 0:
             raise RuntimeError(f"case {self.name}: kiln check: {outcome.stderr}")
         return outcome.stdout
