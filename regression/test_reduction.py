@@ -53,7 +53,7 @@ class ReductionTest(KilnTest):
         self.assertLess(report["method"]["sources"], report["method"]["full_order_particles"])
         training = json.loads((self.folder / "results" / "training" / "report.json").read_text())["training"]
         self.assertEqual([stage["name"] for stage in training["stages"]][0], "full-order run")
-        self.assertGreater(training["sigma_min"], 0.0)
+        self.assertGreater(training["sample_meshes"][0]["sigma_min"], 0.0)
 
     def test_gnat_is_the_same_on_any_number_of_ranks(self):
         self.solve("run", "method.type=gnat")

@@ -32,16 +32,15 @@ std::string first_difference(const std::string& there, const std::string& here) 
 
 }  // namespace
 
-Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, int every, std::string identity)
+Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, std::string identity)
     : method_(context.method),
       scheme_(scheme),
       communicator_(context.communicator),
       folder_(context.folder),
-      every_(every),
       identity_(std::move(identity)) {}
 
 void Checkpoint::observe(const Moment& moment) {
-  if (moment.step == 0 || (moment.step % every_ != 0 && moment.step != moment.last_step)) return;
+  if (!moment.checkpoint) return;
   AtomicPath path(file(folder_), communicator_);
   {
     hdf5::File checkpoint = hdf5::File::create(path.temporary(), communicator_);

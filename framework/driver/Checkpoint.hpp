@@ -8,13 +8,13 @@
 
 namespace kiln {
 
-/// Writes the state of a run every so many steps into one file, which is replaced in one stroke: whenever a run dies,
-/// the last complete checkpoint is there. A run that restarts from it on the same number of ranks goes on bit by bit as
-/// if it had never stopped.
+/// Writes the state of a run into one file at the moments that say so, which is replaced in one stroke: whenever a run
+/// dies, the last complete checkpoint is there. A run that restarts from it on the same number of ranks goes on bit by
+/// bit as if it had never stopped.
 class Checkpoint : public Observer {
  public:
-  /// `identity` is the text of what must agree between the runs: model, time and method. every: steps; 0: never.
-  Checkpoint(const Context& context, TimeScheme& scheme, int every, std::string identity);
+  /// `identity` is the text of what must agree between the runs: model, time and method.
+  Checkpoint(const Context& context, TimeScheme& scheme, std::string identity);
 
   void begin() override {}
   void observe(const Moment& moment) override;
@@ -33,7 +33,6 @@ class Checkpoint : public Observer {
   TimeScheme& scheme_;
   Teuchos::RCP<const Communicator> communicator_;
   std::filesystem::path folder_;
-  int every_;
   std::string identity_;
   int written_ = 0;
 };

@@ -63,8 +63,7 @@ class Assembly {
       observers_.push_back(Registry<Observer>::create(output.sublist(key), context));
     }
     if (output.isSublist("checkpoint")) {
-      observers_.push_back(
-          std::make_unique<Checkpoint>(context, *scheme_, output.sublist("checkpoint").get<int>("every"), identity));
+      observers_.push_back(std::make_unique<Checkpoint>(context, *scheme_, identity));
     }
   }
 

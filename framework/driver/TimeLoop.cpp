@@ -32,7 +32,11 @@ TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
     throw InputError("time.end", fmt::format("{:.10g} s is {:.4g} steps of {:.10g} s", end, count, step),
                      fmt::format("at most {} steps", std::numeric_limits<int>::max()));
   }
-  return {step, 0, static_cast<int>(count)};
+  TimeSpan span{step, 0, static_cast<int>(count)};
+  if (input.isSublist("output") && input.sublist("output").isSublist("checkpoint")) {
+    span.checkpoint_every = input.sublist("output").sublist("checkpoint").get<int>("every");
+  }
+  return span;
 }
 
 LoopTotals run_time_loop(Method&, TimeScheme& scheme, VectorView x, const TimeSpan& span,
@@ -55,7 +59,8 @@ LoopTotals run_time_loop(Method&, TimeScheme& scheme, VectorView x, const TimeSp
     totals.residuals += solve.residuals;
     totals.iterations += solve.iterations;
     totals.capped_steps += solve.converged ? 0 : 1;
-    show({step, span.last_step, time, x, solve}, observers, *observer_time);
+    const bool checkpoint = span.checkpoint_every > 0 && (step % span.checkpoint_every == 0 || step == span.last_step);
+    show({step, span.last_step, time, x, solve, checkpoint}, observers, *observer_time);
   }
   return totals;
 }

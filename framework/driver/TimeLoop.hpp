@@ -12,8 +12,10 @@ struct TimeSpan {
   double step;
   int first_step;
   int last_step;
+  int checkpoint_every = 0;  ///< steps between two checkpoints; the last step has one too; 0: none at all
 
-  /// From the block `time` of the input: `step` and `end`. Throws InputError if `end` is no multiple of `step` to 1e-6.
+  /// From the input's blocks `time` (`step` and `end`) and `output.checkpoint`. Throws InputError if `end` is no
+  /// multiple of `step` to 1e-6.
   static TimeSpan of(const Teuchos::ParameterList& input);
 };
 

@@ -14,6 +14,8 @@
 namespace kiln {
 namespace {
 
+constexpr std::chrono::milliseconds flush_interval(500);
+
 std::string header_of(const std::vector<std::string>& columns) {
   std::string header;
   for (const std::string& column : columns) header += (header.empty() ? "" : ",") + csv_cell(column);
@@ -74,12 +76,20 @@ void CsvLog::add(int step, const std::vector<double>& values) {
     row_ = std::to_string(step);
     for (const double value : values) fmt::format_to(std::back_inserter(row_), ",{}", value);
     row_ += '\n';
-    file_ << row_ << std::flush;
+    file_ << row_;
+    if (std::chrono::steady_clock::now() - flushed_ > flush_interval) flush();
   }
   if (++rows_ % 256 == 0) check();
 }
 
+void CsvLog::flush() {
+  if (communicator_->getRank() != 0) return;
+  file_.flush();
+  flushed_ = std::chrono::steady_clock::now();
+}
+
 void CsvLog::check() {
+  flush();
   throw_together(
       *communicator_, path_.string(),
       file_.fail() ? std::optional<Fault>(Fault{"", "cannot be written", "room on the disk"}) : std::nullopt);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -10,7 +11,7 @@
 namespace kiln {
 
 /// A CSV file that grows by a row at a time, written by rank 0: one header row, numbers that read back to the same
-/// bits. Its first column is the step. Each row reaches the operating system at once.
+/// bits. Its first column is the step. Rows reach the operating system within half a second, and on flush().
 class CsvLog {
  public:
   /// Starts a new file, or with `first_step` above 0 continues one, without its rows of later steps. Throws FileError;
@@ -23,6 +24,7 @@ class CsvLog {
   void add(int step, const std::vector<double>& values);
   /// Throws FileError when a row did not reach the disk. Collective.
   void check();
+  void flush();
   std::size_t rows() const { return rows_; }
 
  private:
@@ -30,6 +32,7 @@ class CsvLog {
   Teuchos::RCP<const Communicator> communicator_;
   std::ofstream file_;
   std::string row_;
+  std::chrono::steady_clock::time_point flushed_;
   std::size_t rows_ = 0;
 };
 

@@ -70,7 +70,11 @@ void Extremes::begin() {
 }
 
 void Extremes::observe(const Moment& moment) {
-  if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
+  if (moment.step % every_ == 0 || moment.step == moment.last_step) add_row(moment);
+  if (moment.checkpoint) log_->flush();
+}
+
+void Extremes::add_row(const Moment& moment) {
   const std::vector<Extreme> mine = local_extremes(moment);
   const int ranks = context_.communicator->getSize();
   std::vector<Extreme> all(mine.size() * static_cast<std::size_t>(ranks));

@@ -31,6 +31,7 @@ class Extremes : public Observer {
     double particle;  ///< global id; exact as a double
   };
   std::vector<std::string> columns() const;
+  void add_row(const Moment& moment);
   /// Largest and smallest of each component on this rank, in turn.
   std::vector<Extreme> local_extremes(const Moment& moment);
 

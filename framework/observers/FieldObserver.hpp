@@ -20,7 +20,6 @@ class FieldObserver : public Observer {
   void finish(RunReport& report) override;
 
  private:
-
   Context context_;
   std::vector<int> steps_;
   VectorView u_;

@@ -17,6 +17,9 @@ struct Moment {
   double time;        ///< in s
   ConstVectorView x;  ///< the method's unknown
   SolveReport solve;  ///< of this step; empty at step 0
+  /// A checkpoint of this step is written after the other observers have seen it: a run that restarts from it needs all
+  /// they have observed so far on the disk.
+  bool checkpoint = false;
 };
 
 /// Looks at a run after its initial state and after every step: writes fields, probes, checkpoints, collects snapshots.

@@ -135,7 +135,11 @@ void ProbeObserver::gather_values(ConstVectorView x) {
 }
 
 void ProbeObserver::observe(const Moment& moment) {
-  if (moment.step % every_ != 0 && moment.step != moment.last_step) return;
+  if (moment.step % every_ == 0 || moment.step == moment.last_step) add_row(moment);
+  if (moment.checkpoint) log_->flush();
+}
+
+void ProbeObserver::add_row(const Moment& moment) {
   gather_values(moment.x);
   std::vector<double> row{moment.time};
   row.insert(row.end(), values_.begin(), values_.end());

@@ -36,6 +36,7 @@ class ProbeObserver : public Observer {
   static std::vector<Probe> find_probes(const Teuchos::ParameterList& list, const Context& context);
   void write_places() const;
   std::vector<std::string> columns() const;
+  void add_row(const Moment& moment);
   void gather_values(ConstVectorView x);
   nlohmann::json summary() const;
 

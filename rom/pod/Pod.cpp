@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <stdexcept>
 
 #include "rom/pod/Tsqr.hpp"
 
@@ -50,21 +52,62 @@ Small small_half_of_gram(const MatrixView& snapshots, const Communicator& commun
   return small;
 }
 
+/// Σ and U of A = U Σ Vᵀ, U with the signs that V decides.
+Small left_half(const MatrixView& a) {
+  const dense::Svd svd = dense::svd(a);
+  const std::size_t rank = svd.values.size();
+  for (std::size_t k = 0; k < rank; ++k) {
+    scale_column(svd.left, k, sign_of_largest(svd.right_transposed.data() + k, svd.right_transposed.extent(1), rank));
+  }
+  return {svd.values, svd.left};
+}
+
 /// S = QR and R = U Σ Vᵀ, so Φ = Q U.
 Small small_half_of_tsqr(const Tsqr& factors, const Communicator& communicator) {
   Small small;
   const std::size_t rank = std::min(factors.r().extent(0), factors.r().extent(1));
   small.singular_values.resize(rank);
   small.to_modes = MatrixView("kiln::rom::left singular vectors", factors.r().extent(0), rank);
-  if (communicator.getRank() == 0) {
-    const dense::Svd svd = dense::svd(factors.r());
-    small.singular_values = svd.values;
-    Kokkos::deep_copy(small.to_modes, svd.left);
-    for (std::size_t k = 0; k < rank; ++k) {
-      scale_column(small.to_modes, k,
-                   sign_of_largest(svd.right_transposed.data() + k, svd.right_transposed.extent(1), rank));
-    }
+  if (communicator.getRank() == 0) small = left_half(factors.r());
+  return small;
+}
+
+/// Uniform in (−1, 1), the same everywhere for the same place (SplitMix64: Steele, Lea, Flood 2014).
+double random_entry(std::uint64_t place) {
+  std::uint64_t z = (place + 1) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
+}
+
+/// An orthonormal basis of the range of S (SᵀS)² Ω (Halko, Martinsson, Tropp 2011, Alg. 4.4).
+Tsqr range_of(const MatrixView& snapshots, int rank, const Communicator& communicator) {
+  constexpr int oversampling = 10, power_iterations = 2;
+  const std::size_t count = snapshots.extent(1);
+  const std::size_t width = std::min(count, static_cast<std::size_t>(rank + oversampling));
+  const MatrixView combinations("kiln::rom::combinations", count, width);
+  for (std::size_t i = 0; i < combinations.size(); ++i) combinations.data()[i] = random_entry(i);
+  const MatrixView range("kiln::rom::range", snapshots.extent(0), width);
+  for (int k = 0;; ++k) {
+    dense::product(Transpose::no, Transpose::no, 1.0, snapshots, combinations, 0.0, range);
+    if (k == power_iterations) return Tsqr(range, communicator);
+    orthonormalise(range, communicator);
+    dense::product(Transpose::yes, Transpose::no, 1.0, snapshots, range, 0.0, combinations);
+    dense::sum_over_ranks(communicator, combinations.data(), combinations.size());
   }
+}
+
+/// QᵀS = U Σ Vᵀ, so Φ = Q U.
+Small small_half_of_projection(const Tsqr& range, const MatrixView& snapshots, const Communicator& communicator) {
+  const std::size_t width = range.r().extent(0);
+  MatrixView identity("kiln::rom::identity", width, width);
+  for (std::size_t k = 0; k < width; ++k) identity(k, k) = 1.0;
+  const MatrixView projected("kiln::rom::projected snapshots", width, snapshots.extent(1));
+  dense::product(Transpose::yes, Transpose::no, 1.0, range.apply(identity), snapshots, 0.0, projected);
+  dense::sum_over_ranks(communicator, projected.data(), projected.size());
+  Small small{std::vector<double>(width), MatrixView("kiln::rom::left singular vectors", width, width)};
+  if (communicator.getRank() == 0) small = left_half(projected);
   return small;
 }
 
@@ -85,8 +128,17 @@ double loss_of_orthogonality(const MatrixView& modes, const Communicator& commun
 Pod pod(const Snapshots& snapshots, const PodSettings& settings, const Communicator& communicator) {
   const MatrixView matrix = snapshots.matrix();
   std::optional<Tsqr> factors;
-  if (settings.algorithm == PodSettings::Algorithm::tsqr) factors.emplace(matrix, communicator);
-  Small small = factors ? small_half_of_tsqr(*factors, communicator) : small_half_of_gram(matrix, communicator);
+  Small small;
+  if (settings.algorithm == PodSettings::Algorithm::gram) {
+    small = small_half_of_gram(matrix, communicator);
+  } else if (settings.algorithm == PodSettings::Algorithm::tsqr) {
+    factors.emplace(matrix, communicator);
+    small = small_half_of_tsqr(*factors, communicator);
+  } else {
+    if (!settings.rank) throw std::logic_error("a randomised POD of no given rank");
+    factors.emplace(range_of(matrix, *settings.rank, communicator));
+    small = small_half_of_projection(*factors, matrix, communicator);
+  }
   dense::broadcast(communicator, small.singular_values.data(), small.singular_values.size());
   dense::broadcast(communicator, small.to_modes.data(), small.to_modes.size());
 

@@ -14,7 +14,8 @@ struct Pod {
   bool reorthogonalised;  ///< whether Φ had lost more orthogonality than 1e-10 and was orthonormalised again
 };
 
-/// Collective over the ranks that hold the snapshots' rows. `tsqr` overwrites the snapshots; `gram` leaves them. Signs
+/// Collective over the ranks that hold the snapshots' rows. `tsqr` overwrites the snapshots; `gram` and
+/// `randomised` leave them. Signs
 /// are those that make the largest entry of each right singular vector positive, so that they do not depend on the
 /// number of ranks. Throws InputError as truncate() does.
 Pod pod(const Snapshots& snapshots, const PodSettings& settings, const Communicator& communicator);

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <new>
 #include <stdexcept>
+#include <vector>
+
+#include "rom/pod/Tsqr.hpp"
 
 namespace kiln {
 
@@ -12,8 +16,10 @@ void Snapshots::append(ConstVectorView column) {
   if (column.extent(0) != rows_) {
     throw std::logic_error(fmt::format("snapshot {}: {} values; expected {}", count_, column.extent(0), rows_));
   }
+  if (limit_ > 0 && count_ == limit_) compress();
   if (count_ == capacity_) {
-    const std::size_t capacity = std::max(capacity_ + capacity_ / 4, capacity_ + 16);
+    std::size_t capacity = std::max(capacity_ + capacity_ / 4, capacity_ + 16);
+    if (limit_ > 0) capacity = std::min(capacity, limit_);
     // glibc moves large blocks by remapping their pages, so growing holds no second copy.
     void* grown = std::realloc(values_.get(), std::max<std::size_t>(1, rows_ * capacity) * sizeof(double));
     if (grown == nullptr) throw std::bad_alloc();
@@ -23,13 +29,48 @@ void Snapshots::append(ConstVectorView column) {
   }
   std::copy_n(column.data(), rows_, values_.get() + count_ * rows_);
   ++count_;
+  ++appended_;
+}
+
+void Snapshots::limit(int columns, Teuchos::RCP<const Communicator> communicator) {
+  if (columns < 2) throw std::logic_error(fmt::format("snapshots limited to {} columns; expected at least 2", columns));
+  limit_ = static_cast<std::size_t>(columns);
+  communicator_ = std::move(communicator);
+}
+
+void Snapshots::compress() {
+  const Tsqr factors(matrix(), *communicator_);
+  std::vector<double> values(std::min(factors.r().extent(0), count_));
+  MatrixView directions("kiln::rom::directions", factors.r().extent(0), values.size());
+  if (communicator_->getRank() == 0) {
+    const dense::Svd svd = dense::svd(factors.r());
+    values = svd.values;
+    Kokkos::deep_copy(directions, svd.left);
+  }
+  dense::broadcast(*communicator_, values.data(), values.size());
+  dense::broadcast(*communicator_, directions.data(), directions.size());
+  double energy = 0.0;
+  for (const double value : values) energy += value * value;
+  appended_energy_ = energy + discarded_;
+
+  constexpr double round_off = std::numeric_limits<double>::epsilon();
+  std::size_t kept = std::min(values.size(), limit_ / 2);
+  while (kept > 1 && !(values[kept - 1] > round_off * values.front())) --kept;
+  for (std::size_t k = kept; k < values.size(); ++k) discarded_ += values[k] * values[k];
+  for (std::size_t k = 0; k < kept; ++k) {
+    for (std::size_t i = 0; i < directions.extent(0); ++i) directions(i, k) *= values[k];
+  }
+  const MatrixView leading = factors.apply(dense::leading_columns(ConstMatrixView(directions), kept));
+  std::copy_n(leading.data(), leading.size(), values_.get());
+  count_ = kept;
 }
 
 MatrixView Snapshots::matrix() const { return MatrixView(values_.get(), rows_, count_); }
 
 void Snapshots::clear() {
   values_.reset();
-  count_ = capacity_ = 0;
+  count_ = capacity_ = appended_ = 0;
+  discarded_ = appended_energy_ = 0.0;
 }
 
 }  // namespace kiln

@@ -14,11 +14,16 @@ namespace {
 constexpr const char* squared = "squared singular values";
 constexpr const char* plain = "singular values";
 
+PodSettings::Algorithm algorithm_of(const std::string& name) {
+  if (name == "tsqr") return PodSettings::Algorithm::tsqr;
+  return name == "randomised" ? PodSettings::Algorithm::randomised : PodSettings::Algorithm::gram;
+}
+
 }  // namespace
 
 PodSettings::PodSettings(const Teuchos::ParameterList& list)
     : path(list.name()),
-      algorithm(list.get<std::string>("algorithm") == "tsqr" ? Algorithm::tsqr : Algorithm::gram),
+      algorithm(algorithm_of(list.get<std::string>("algorithm"))),
       energy_of(list.get<std::string>("energy_of") == plain ? EnergyOf::singular_values
                                                             : EnergyOf::squared_singular_values) {
   if (list.isParameter("rank")) rank = list.get<int>("rank");
@@ -30,13 +35,19 @@ Specification PodSettings::specification() {
   s.integer("rank", "number of basis vectors; either this or energy").at_least(1).optional();
   s.real("energy", "fraction of the statistical energy to keep, e.g. 99.999 %").above(0).at_most(1).optional();
   s.choice("energy_of", "what the energy sums up", {squared, plain}).defaults_to(squared);
-  s.choice("algorithm",
-           "gram: eigenvectors of the snapshots' Gram matrix; tsqr: parallel QR, for small singular values",
-           {"gram", "tsqr"})
+  s.choice(
+       "algorithm",
+       "gram: eigenvectors of the snapshots' Gram matrix; tsqr: parallel QR, for small singular values; randomised: "
+       "projection on random combinations, for few vectors of very many snapshots",
+       {"gram", "tsqr", "randomised"})
       .defaults_to("gram");
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     const bool rank = list.isParameter("rank"), energy = list.isParameter("energy");
     if (rank && energy) problems.push_back({"rank", "both rank and energy are given", "one of the two", {}});
+    if (energy && list.get<std::string>("algorithm") == "randomised") {
+      problems.push_back(
+          {"energy", "a randomised decomposition does not know the energy of all snapshots", "rank", {}});
+    }
     if (!rank && !energy) problems.push_back({"", "neither rank nor energy is given", "one of the two", {}});
   });
   return s;

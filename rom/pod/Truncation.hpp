@@ -12,8 +12,9 @@ namespace kiln {
 /// The blocks `reduction.basis` and `reduction.residual_basis`: how a POD is computed and where it is cut off.
 struct PodSettings {
   enum class Algorithm {
-    gram,  ///< eigenvectors of SᵀS
-    tsqr   ///< QR of S spread over the ranks, then the SVD of R
+    gram,       ///< eigenvectors of SᵀS
+    tsqr,       ///< QR of S spread over the ranks, then the SVD of R
+    randomised  ///< SVD of S projected on the range of S (SᵀS)² Ω, Ω random: for few vectors of many snapshots
   };
   enum class EnergyOf { squared_singular_values, singular_values };
 

@@ -37,6 +37,12 @@ constexpr int most_attempts = 4;
 Specification snapshot_specification() {
   Specification s;
   s.integer("every", "steps between two snapshots of the state").at_least(1).defaults_to(1);
+  s.integer(
+       "hold",
+       "most snapshots held in memory, of the residual and, in one window, of the state; more of them are merged into "
+       "their leading singular vectors")
+      .at_least(2)
+      .optional();
   return s;
 }
 
@@ -126,6 +132,11 @@ void ProcedureTwo::stage(const std::string& name, RunReport& report, const std::
   report.section("training")["stages"].push_back({{"name", name}, {"wall_s", seconds.count()}});
 }
 
+void ProcedureTwo::hold_at_most(Snapshots& snapshots) const {
+  const Teuchos::ParameterList& settings = block_.sublist("snapshots");
+  if (settings.isParameter("hold")) snapshots.limit(settings.get<int>("hold"), communicator_);
+}
+
 void ProcedureTwo::warn(const std::string& warning, RunReport& report) const {
   report.section("training")["warnings"].push_back(warning);
   if (communicator_->getRank() == 0) fmt::print(stderr, "warning: {}\n", warning);
@@ -137,6 +148,7 @@ void ProcedureTwo::run_full_order(RunReport& report) {
   reference_ = VectorView("kiln::rom::initial state", local_size(*model_->sources()) * model_->fields().size());
   model_->initial_state(reference_);
   snapshots_ = Snapshots(method.row_size());
+  if (windows_.count == 1) hold_at_most(snapshots_);
   SnapshotObserver observer(method, snapshots_, every_);
   trial_.queries = nearest_particles(*model_, queried_positions(input_));
   QueryRecord record(method, trial_.queries);
@@ -147,24 +159,23 @@ void ProcedureTwo::run_full_order(RunReport& report) {
       Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{method, span_.step});
   scheme->start(x, 0.0);
   ProgressObserver progress("full order", 0, *communicator_);
-  std::vector<Observer*> observers{&observer, &record};
+  const int moments = std::min(span_.last_step, trial_moments);
+  for (int k = 1; k <= moments; ++k) {
+    trial_.steps.push_back(static_cast<int>(static_cast<long long>(span_.last_step) * k / moments));
+  }
+  trial_.states = Snapshots(method.row_size());
+  StateRecord states(method, trial_.steps, trial_.states);
+  std::vector<Observer*> observers{&observer, &record, &states};
   if (!quiet_) observers.push_back(&progress);
   const LoopTotals totals = run_time_loop(method, *scheme, x, span_, observers);
 
   observer.finish(report);
   trial_.query_values = record.values();
-  trial_.states = Snapshots(method.row_size());
-  const int count = static_cast<int>(snapshots_.count()), moments = std::min(count, trial_moments);
-  for (int k = 1; k <= moments; ++k) {
-    const int snapshot = static_cast<int>(static_cast<long long>(count) * k / moments);
-    trial_.steps.push_back(std::min(snapshot * every_, span_.last_step));
-    trial_.states.append(Kokkos::subview(snapshots_.matrix(), Kokkos::ALL, snapshot - 1));
-  }
   report.section("training")["full_order"] = {{"steps", totals.steps}, {"residuals", totals.residuals}};
 }
 
 std::vector<int> ProcedureTwo::window_ends(double error) const {
-  const int snapshots = static_cast<int>(snapshots_.count());
+  const int snapshots = (span_.last_step + every_ - 1) / every_;
   std::vector<int> ends;
   if (windows_.error) {
     ends = windows_within(*costs_, *basis_settings_.rank, error);
@@ -191,6 +202,12 @@ std::vector<Pod> ProcedureTwo::window_bases(const std::vector<int>& ends, RunRep
   std::vector<Pod> bases;
   std::size_t begin = 0;
   const MatrixView states = snapshots_.matrix();
+  if (ends.size() == 1) {
+    bases.push_back(pod(snapshots_, basis_settings_, *communicator_));
+    facts.push_back(facts_of(bases.back()));
+    facts.back()["energy_discarded"] = snapshots_.discarded_energy();
+    return bases;
+  }
   for (const int step : ends) {
     const std::size_t end = (step + every_ - 1) / every_;
     Snapshots increments(snapshots_.rows());
@@ -249,12 +266,14 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
       Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{lspg, span_.step});
   scheme->start(x, 0.0);
   Snapshots residuals(lspg.row_size());
+  hold_at_most(residuals);
   lspg.observe_residuals([&residuals](ConstVectorView residual) { residuals.append(residual); });
 
   nlohmann::json& facts = report.section("training");
   facts["residual_basis"] = facts["sample_meshes"] = nlohmann::json::array();
   LoopTotals totals;
   std::size_t taken = 0;
+  double discarded = 0.0;
   std::vector<WindowReduction> windows;
   int first_step = 0;
   for (std::size_t w = 0; w < ends.size(); ++w) {
@@ -266,7 +285,8 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
     totals.steps += part.steps;
     totals.residuals += part.residuals;
     totals.capped_steps += part.capped_steps;
-    taken += residuals.count();
+    taken += residuals.appended();
+    discarded = std::max(discarded, residuals.discarded_energy());
     windows.push_back(learn_window(ends[w] * span_.step, std::move(bases[w]), residuals));
     const WindowReduction& window = windows.back();
     facts["residual_basis"].push_back(facts_of(window.residual_basis));
@@ -288,7 +308,8 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
   facts["lspg"] = {{"steps", totals.steps},
                    {"residuals", totals.residuals},
                    {"capped_steps", totals.capped_steps},
-                   {"residual_snapshots", taken}};
+                   {"residual_snapshots", taken},
+                   {"residual_energy_discarded", discarded}};
   return windows;
 }
 

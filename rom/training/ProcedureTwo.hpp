@@ -49,6 +49,8 @@ class ProcedureTwo : public Trainer {
   TrialErrors attempt(const std::string& path, double error, RunReport& report);
   /// Times a stage, shows it on rank 0, and puts its seconds into the report.
   void stage(const std::string& name, RunReport& report, const std::function<void()>& work);
+  /// Limits snapshots as the input asks for.
+  void hold_at_most(Snapshots& snapshots) const;
   void warn(const std::string& warning, RunReport& report) const;
 
   const Teuchos::ParameterList& input_;

@@ -1,6 +1,7 @@
 #include "rom/training/SnapshotObserver.hpp"
 
 #include <Tpetra_Map.hpp>
+#include <algorithm>
 
 #include "framework/report/RunReport.hpp"
 
@@ -24,6 +25,15 @@ void SnapshotObserver::observe(const Moment& moment) {
   snapshots_.append(state_);
 }
 
-void SnapshotObserver::finish(RunReport& report) { report.section("training")["state_snapshots"] = snapshots_.count(); }
+StateRecord::StateRecord(Method& method, const std::vector<int>& steps, Snapshots& states)
+    : steps_(steps), every_(method, states, 1) {}
+
+void StateRecord::observe(const Moment& moment) {
+  if (std::binary_search(steps_.begin(), steps_.end(), moment.step)) every_.observe(moment);
+}
+
+void SnapshotObserver::finish(RunReport& report) {
+  report.section("training")["state_snapshots"] = snapshots_.appended();
+}
 
 }  // namespace kiln

@@ -22,4 +22,18 @@ class SnapshotObserver : public Observer {
   VectorView reference_, state_;
 };
 
+/// Collects u − u0 of given steps, ascending, which must outlive the observer.
+class StateRecord : public Observer {
+ public:
+  StateRecord(Method& method, const std::vector<int>& steps, Snapshots& states);
+
+  void begin() override {}
+  void observe(const Moment& moment) override;
+  void finish(RunReport&) override {}
+
+ private:
+  const std::vector<int>& steps_;
+  SnapshotObserver every_;
+};
+
 }  // namespace kiln

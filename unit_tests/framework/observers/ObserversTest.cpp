@@ -106,10 +106,23 @@ TEST(ProbeObserver, WritesEverySoManyStepsAndTheLastOne) {
   StandInMethod method;
   ProbeObserver observer(probe_list({{"one", {0, 0, 0}}}, 3), context_of(method, folder));
   run(observer, method, 0, last_step);
+  RunReport report;
+  observer.finish(report);
   world()->barrier();
   std::vector<double> steps;
   for (const auto& row : read_csv(folder / "probes.csv").rows) steps.push_back(row[0]);
   EXPECT_EQ(steps, (std::vector<double>{0, 3, 6, 7}));
+}
+
+TEST(ProbeObserver, HasItsRowsOnDiskWhenACheckpointIsWritten) {
+  TestFolder folder;
+  StandInMethod method;
+  ProbeObserver observer(probe_list({{"one", {0, 0, 0}}}, 3), context_of(method, folder));
+  run(observer, method, 0, 4);
+  observer.observe({5, last_step, 5 * step_length, method.unknown(5), {}, true});
+  world()->barrier();
+  EXPECT_EQ(read_csv(folder / "probes.csv").rows.size(), 2u);
+  world()->barrier();
 }
 
 TEST(ProbeObserver, ARestartCutsLaterRowsAndContinues) {
