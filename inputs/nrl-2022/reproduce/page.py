@@ -8,6 +8,7 @@ import markdown
 import figures
 import tables
 from results import SETTINGS, SETTING_TITLES
+from summary import full_order_figures
 
 STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; color: #222; }
@@ -40,10 +41,28 @@ def summary_of(results, published):
                 entry[setting]["reduction"] = tables.reduction_figures(file)
         full = results.full_order(experiment)
         if full:
-            entry["full_order"] = {"over_ranks": over_ranks(results, full)}
+            entry["full_order"] = full_order_figures(full.run) | {"over_ranks": over_ranks(results, full)}
         entry["report"] = published.of_experiment(experiment)
         experiments[str(experiment)] = entry
-    return {"experiments": experiments}
+    return {"provenance": provenance_of(results), "experiments": experiments}
+
+
+def provenance_of(results):
+    """Of the first complete case: what ran on what; empty if none is complete."""
+    complete = next((case for case in results.cases if case.complete), None)
+    if complete is None:
+        return {}
+    facts = complete.run.report["provenance"]
+    return {
+        "commit": facts["commit"],
+        "date": facts["date"],
+        "machine": f"{facts['processor']}, {facts['cores']} cores",
+        "ranks": sorted({case.run.report["provenance"]["ranks"]
+                         for case in results.cases + results.further if case.complete}),
+        "blas": facts.get("openblas") or facts["blas"],
+        "build": f"{facts['compiler']}, {facts['build_flags']}",
+        "libraries": f"Trilinos {facts['trilinos']}, {facts['mpi']}, HDF5 {facts['hdf5']}",
+    }
 
 
 def over_ranks(results, case):
@@ -99,22 +118,19 @@ class Page:
         (self.folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
 
     def provenance(self):
-        complete = next((case for case in self.results.cases if case.complete), None)
-        if complete is None:
+        facts = provenance_of(self.results)
+        if not facts:
             return "No case is complete."
-        facts = complete.run.report["provenance"]
-        ranks = sorted({case.run.report["provenance"]["ranks"]
-                        for case in self.results.cases + self.results.further if case.complete})
         lines = {
             "command": f"`{self.command}`",
             "page written": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
             "first case run": facts["date"],
             "commit": f"`{facts['commit']}`",
-            "machine": f"{facts['processor']}, {facts['cores']} cores",
-            "ranks": ", ".join(map(str, ranks)),
-            "BLAS": facts.get("openblas") or facts["blas"],
-            "build": f"{facts['compiler']}, `{facts['build_flags']}`",
-            "libraries": f"Trilinos {facts['trilinos']}, {facts['mpi']}, HDF5 {facts['hdf5']}",
+            "machine": facts["machine"],
+            "ranks": ", ".join(map(str, facts["ranks"])),
+            "BLAS": facts["blas"],
+            "build": f"`{facts['build']}`",
+            "libraries": facts["libraries"],
             "the report's machine": self.published.facts["machine"],
         }
         frame = tables.pd.DataFrame(lines.items(), columns=["", "of these runs"])

@@ -153,7 +153,7 @@ def reduction_figures(file):
         others = max(len(np.setdiff1d(mesh["sources"][:], mesh["rows"][:])) for mesh in meshes)
         active = max(len(np.union1d(mesh["sources"][:], mesh["rows"][:])) for mesh in meshes)
         return {
-            "windows": len(windows),
+            "time_windows": len(windows),
             "basis_rank": max(int(window["basis"].attrs["rank"]) for window in windows),
             "residual_rank": max(int(mesh.attrs["residual_rank"]) for mesh in meshes),
             "sampled": sampled,

@@ -49,7 +49,7 @@ def reductions(results, published):
                     row[title] = number(ours[key], digits) if key == "potp" else ours[key]
                 else:
                     row[title] = MISSING
-            row["windows"] = ours.get("windows", MISSING)
+            row["windows"] = ours.get("time_windows", MISSING)
             row["training"] = f"{trained.seconds:.1f} s" if file else state(trained)
             rows.append(row)
     return pd.DataFrame(rows)
