@@ -14,9 +14,7 @@ REPOSITORY = HERE.parents[1]
 sys.path[:0] = [str(REPOSITORY / "inputs/nrl-2022/reproduce"), str(REPOSITORY / "framework/report")]
 
 import history
-import reproduce
-import trends
-from gold import Tolerances, compare, read_gold, update_gold
+from gold_values import Tolerances, compare, read_gold, update_gold
 from measured import failures_of, figures_of
 
 # Runs of a tenth of a second: their ratios tell little.
@@ -25,6 +23,8 @@ SMALL_AT_LEAST = 0.05
 
 def begin(folder, reuse):
     """Removes what an earlier nightly run left, unless that one was interrupted or its results are to be used again."""
+    import reproduce
+
     marker = folder / "unfinished"
     if not reuse and not marker.exists():
         for root in reproduce.roots(folder / "study"):
@@ -36,6 +36,9 @@ def begin(folder, reuse):
 
 def measure(options, folder):
     """The summary of the study, which is run or resumed."""
+    # What draws pictures takes a second to load, and most commands draw none.
+    import reproduce
+
     marker = begin(folder, options.reuse)
     output = folder / "study"
     reproduce.run_studies(options.kiln, output, reproduce.SCALES["tiny"] if options.small else None, options.ranks)
@@ -59,6 +62,7 @@ def main():
     parser = argparse.ArgumentParser(prog="./dev nightly", description=__doc__)
     parser.add_argument("--small", action="store_true", help="a small study, in seconds, with gold values of its own")
     parser.add_argument("--reuse", action="store_true", help="run only what is missing or changed since the last time")
+    parser.add_argument("--compare-only", action="store_true", help="compare the last run's figures; no line, no pictures")
     parser.add_argument("--update-gold", action="store_true", help="take the last nightly run's figures as gold values")
     parser.add_argument("--reason", help="why they are expected to differ; goes into the gold file")
     parser.add_argument("--kiln", default=str(REPOSITORY / "build/release/kiln"), help="the built program")
@@ -79,7 +83,7 @@ def main():
         print(f"{gold_file}: {update['changed']} of {update['of']} gold values changed: {update['reason']}")
         return 0
 
-    summary = measure(options, folder)
+    summary = read_summary(folder) if options.compare_only else measure(options, folder)
     figures = figures_of(summary)
     failure = None
     gold, drifts = {}, []
@@ -89,11 +93,14 @@ def main():
     except SystemExit as error:
         # The run's figures are worth keeping all the same.
         failure = error
-    history_file = options.history or folder / "history.jsonl"
-    history.append(history_file, history.line_of(facts_of(summary), figures, drifts))
-    trends.write_trends(history.read(history_file), gold, drifts, folder / "trends")
-    print(f"{len(figures)} figures, {len(gold)} gold values, {len(drifts)} drifted; "
-          f"history: {history_file}; trends: {folder / 'trends' / 'index.html'}")
+    print(f"{len(figures)} figures, {len(gold)} gold values, {len(drifts)} drifted")
+    if not options.compare_only:
+        import trends
+
+        history_file = options.history or folder / "history.jsonl"
+        history.append(history_file, history.line_of(facts_of(summary), figures, drifts))
+        trends.write_trends(history.read(history_file), gold, drifts, folder / "trends")
+        print(f"history: {history_file}; trends: {folder / 'trends' / 'index.html'}")
     for name, why in failures_of(summary).items():
         print(f"case {name} {why}")
     for drift in drifts:
@@ -105,4 +112,10 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except SystemExit as error:
+        if isinstance(error.code, str):
+            print(f"nightly: {error.code}", file=sys.stderr)
+            sys.exit(2)
+        raise
