@@ -62,7 +62,7 @@ def main():
     parser = argparse.ArgumentParser(prog="./dev nightly", description=__doc__)
     parser.add_argument("--small", action="store_true", help="a small study, in seconds, with gold values of its own")
     parser.add_argument("--reuse", action="store_true", help="run only what is missing or changed since the last time")
-    parser.add_argument("--compare-only", action="store_true", help="compare the last run's figures; no line, no pictures")
+    parser.add_argument("--compare-only", action="store_true", help="compare the last run's figures, run nothing")
     parser.add_argument("--update-gold", action="store_true", help="take the last nightly run's figures as gold values")
     parser.add_argument("--reason", help="why they are expected to differ; goes into the gold file")
     parser.add_argument("--kiln", default=str(REPOSITORY / "build/release/kiln"), help="the built program")

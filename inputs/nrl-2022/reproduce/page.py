@@ -54,7 +54,8 @@ def provenance_of(results):
         return {}
     facts = complete.run.report["provenance"]
     return {
-        "commit": facts["commit"],
+        "commit": ", ".join(sorted({case.run.report["provenance"]["commit"]
+                                    for case in results.cases + results.further if case.complete})),
         "date": facts["date"],
         "machine": f"{facts['processor']}, {facts['cores']} cores",
         "ranks": sorted({case.run.report["provenance"]["ranks"]
@@ -161,7 +162,7 @@ class Page:
             unfinished(results),
             "## Table 2: ranks and sampled particles",
             table(tables.reductions(results, published)),
-            "Windows: the largest of them. Training is the whole of it: full order, POD, LSPG run, sampling, trial run. "
+            "Of several windows the largest. Training is all of it: full order, POD, LSPG run, sampling, trial run. "
             f"{why['ranks']} {why['sources']}",
             "## Errors and times of every case",
             table(tables.accuracy(results)),
@@ -171,15 +172,15 @@ class Page:
             f"{worst['probe']}, Case {worst['case']}, tolerance 1e-2. {why['errors']} {why['full_order']}",
             "## Table 4: savings in wall time",
             table(tables.savings(results, published, "best_wall_time")),
-            "SWT: saving in wall time (Eq. 33); SCPUH: in CPU hours (Eq. 34); each side on the cores where its wall time is "
-            f"least; \"a against b\": ROM on a, full order on b. {why['savings']} {why['core_counts']}",
+            "SWT: saving in wall time (Eq. 33); SCPUH: in CPU hours (Eq. 34); each side on the cores where its wall time "
+            f"is least; \"a against b\": ROM on a, full order on b. {why['savings']} {why['core_counts']}",
             "## Table 5: savings in CPU hours",
             table(tables.savings(results, published, "best_cpu_hours")),
             f"As Table 4, each side where its CPU time is least. {why['cpu_hours']}",
             "## Algorithm 1 as printed",
             table(tables.as_printed(results, published)),
-            "Product and factorisation in every Gauss–Newton iteration (`method.factors: every iteration`) beside the factors "
-            "that are kept until the Jacobian is refreshed.",
+            "Product and factorisation in every Gauss–Newton iteration (`method.factors: every iteration`) beside the "
+            "factors that are kept until the Jacobian is refreshed.",
             "## Figures",
             self.figure(figures.material_curves(results, folder), "Fig. 2: material properties of 316L", 2),
             "Drawn from the table that the model reads, as it stands in the reduction file. " + why["curves"],
@@ -188,8 +189,8 @@ class Page:
         ]
         for setting in SETTINGS:
             name = figures.reduced_surface(results, folder, setting)
-            number = 4 if setting == "published_case_1" else None
-            parts.append(self.figure(name, f"Fig. 4: GNAT, {SETTING_TITLES[setting]}; grey particles take no part", number))
+            title = f"Fig. 4: GNAT, {SETTING_TITLES[setting]}; grey particles take no part"
+            parts.append(self.figure(name, title, 4 if setting == "published_case_1" else None))
         for experiment in results.experiments:
             name = figures.probe_error_curves(results, folder, experiment)
             title = f"Fig. {4 + experiment}: errors of the probes, Experiment {experiment}"

@@ -43,12 +43,9 @@ def reductions(results, published):
                 ("basis_rank", "rank Φ"), ("residual_rank", "rank Φ_r"), ("sampled", "n_p"), ("sources", "n_s"),
                 ("potp", "POTP, %"),
             ):
-                digits = 4 if key == "potp" else 9
-                row[f"{title}, report"] = number(report.get(key), digits) if key == "potp" else report.get(key, NOT_IN_REPORT)
-                if ours:
-                    row[title] = number(ours[key], digits) if key == "potp" else ours[key]
-                else:
-                    row[title] = MISSING
+                for suffix, figures, otherwise in ((", report", report, NOT_IN_REPORT), ("", ours, MISSING)):
+                    value = figures.get(key, otherwise)
+                    row[title + suffix] = number(value, 4) if isinstance(value, float) else value
             row["windows"] = ours.get("time_windows", MISSING)
             row["training"] = f"{trained.seconds:.1f} s" if file else state(trained)
             rows.append(row)
@@ -95,7 +92,7 @@ def accuracy(results):
                         "state": "complete",
                     }
                 else:
-                    row["state"] = state(case) if not case.complete else "complete, without its full-order run or training"
+                    row["state"] = "complete, but not what it needs" if case.complete else state(case)
                 rows.append(row)
     columns = ["Exp.", "setting", "method", "tolerance", "probe error, % of K", "probe error, % of rise", "field L2, %",
                "residuals a step", "peak, K", "wall, s", "CPU, s", "wall saving", "CPU saving", "state"]
@@ -131,12 +128,13 @@ def savings(results, published, table):
                 if best and full:
                     case, ranks, figures = best
                     _, full_ranks, full_figures = full
+                    hours = [number(of["cpu_s"] / 3600) for of in (figures, full_figures)]
                     row |= {
                         "SWT": number(full_figures["wall_s"] / figures["wall_s"]),
                         "SCPUH": number(full_figures["cpu_s"] / figures["cpu_s"]),
                         "tolerance": case.tolerance or "1e-3",
                         "cores": f"{ranks} against {full_ranks}",
-                        "CPU hours": f"{number(figures['cpu_s'] / 3600)} against {number(full_figures['cpu_s'] / 3600)}",
+                        "CPU hours": " against ".join(hours),
                     }
                 else:
                     # The best of nothing: every case that should be here says why it is not.
