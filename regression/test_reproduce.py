@@ -83,6 +83,7 @@ class ReproduceTest(unittest.TestCase):
         for word in ("machine", "BLAS", "build", "commit", "command", "ranks"):
             self.assertRegex(self.text, rf"\| {word} \| \S")
         self.assertIn(self.summary["provenance"]["commit"], self.text)
+        self.assertIn("1,728 particles, 100 steps; the report has 70,000 and 1,000: a smaller study", self.text)
 
     def test_published_is_a_copy(self):
         names = sorted(path.name for path in (self.study / "page").iterdir())

@@ -126,7 +126,7 @@ def probe_error_curves(results, folder, experiment):
     for axis, probe in zip(axes.flat, probes):
         for case in cases:
             error = errors[case][probe]
-            label = f"{SETTING_TITLES[case.setting]}, tol {case.tolerance or '1e-3'}"
+            label = f"{SETTING_TITLES[case.setting]}, tol {results.tolerance(case)}"
             style = "--" if case.tolerance == "1e-2" else "-"
             axis.semilogy(1e3 * error["time"][1:], np.maximum(error["percent"][1:], 1e-8), style,
                           color=COLOURS[case.setting], linewidth=0.9, label=label)

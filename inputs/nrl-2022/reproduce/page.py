@@ -62,8 +62,17 @@ def provenance_of(results):
                          for case in results.cases + results.further if case.complete}),
         "blas": facts.get("openblas") or facts["blas"],
         "build": f"{facts['compiler']}, {facts['build_flags']}",
+        **sizes_of(results),
         "libraries": f"Trilinos {facts['trilinos']}, {facts['mpi']}, HDF5 {facts['hdf5']}",
     }
+
+
+def sizes_of(results):
+    """Particles and steps of the full-order runs, or nothing without one."""
+    full = next(filter(None, map(results.full_order, results.experiments)), None)
+    if full is None:
+        return {}
+    return {"particles": full.run.report["method"]["particles"], "steps": full.run.report["run"]["steps"]}
 
 
 def over_ranks(results, case):
@@ -129,6 +138,7 @@ class Page:
             "commit": f"`{facts['commit']}`",
             "machine": facts["machine"],
             "ranks": ", ".join(map(str, facts["ranks"])),
+            "size": self.size(facts),
             "BLAS": facts["blas"],
             "build": f"`{facts['build']}`",
             "libraries": facts["libraries"],
@@ -136,6 +146,18 @@ class Page:
         }
         frame = tables.pd.DataFrame(lines.items(), columns=["", "of these runs"])
         return tables.as_markdown(frame)
+
+    def size(self, facts):
+        """Particles and steps; where they are not the report's, that the figures cannot be read beside its own."""
+        if "particles" not in facts:
+            return "no full-order run is complete"
+        size = (facts["particles"], facts["steps"])
+        text = f"{size[0]:,} particles, {size[1]:,} steps"
+        report = self.published.facts["size"]
+        if size == (report["particles"], report["steps"]):
+            return text
+        return (f"**{text}; the report has {report['particles']:,} and {report['steps']:,}: a smaller study, whose figures "
+                "say nothing about the report's**")
 
     def figure(self, name, title, number=None):
         """Markdown of one figure; `name` None: the runs that it shows are missing."""

@@ -132,6 +132,13 @@ class Results:
             self._summaries[case.folder] = compare_runs(full.run, case.run, file)
         return self._summaries[case.folder]
 
+    def tolerance(self, case):
+        """As the study names it; the cases that it does not vary have the full-order run's. Empty if that is missing."""
+        full = self.full_order(case.experiment)
+        if case.tolerance is None and full is not None:
+            return np.format_float_scientific(full.run.report["method"]["tolerance"], trim="-", exp_digits=1)
+        return case.tolerance or ""
+
     def best_gnat(self, experiment, setting):
         """The complete GNAT case that saves most wall time, or None."""
         found = [case for case in self.find(experiment, setting, "gnat") if not case.printed and self.summary(case)]

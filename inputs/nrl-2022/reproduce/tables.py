@@ -75,7 +75,7 @@ def accuracy(results):
                     "Exp.": experiment,
                     "setting": SETTING_TITLES[setting],
                     "method": case.title,
-                    "tolerance": case.tolerance or "1e-3",
+                    "tolerance": results.tolerance(case),
                 }
                 summary = results.summary(case)
                 if summary:
@@ -132,7 +132,7 @@ def savings(results, published, table):
                     row |= {
                         "SWT": number(full_figures["wall_s"] / figures["wall_s"]),
                         "SCPUH": number(full_figures["cpu_s"] / figures["cpu_s"]),
-                        "tolerance": case.tolerance or "1e-3",
+                        "tolerance": results.tolerance(case),
                         "cores": f"{ranks} against {full_ranks}",
                         "CPU hours": " against ".join(hours),
                     }
