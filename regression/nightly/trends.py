@@ -33,6 +33,7 @@ def series_of(history, kind):
 
 def draw(history, gold, kind, experiment, measure, lines, folder):
     figure, axis = plt.subplots(figsize=(9, 4.2), layout="constrained")
+    axis.set_prop_cycle(color=plt.get_cmap("tab20").colors)
     for case, (runs, values) in lines.items():
         drawn, = axis.plot(runs, values, marker=".", label=case)
         name = f"{experiment}/{case}/{measure}"

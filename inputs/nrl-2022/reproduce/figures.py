@@ -147,7 +147,7 @@ def times_over_cores(results, folder, measure, number, label):
     """Figs. 9 and 10: full order and GNAT over the numbers of ranks that were measured."""
     rows = (len(results.experiments) + 1) // 2
     figure, axes = plt.subplots(rows, 2, figsize=(11, 3.6 * rows), layout="constrained", squeeze=False)
-    everything = set()
+    everything, machine = set(), "?"
     for axis, experiment in zip(axes.flat, results.experiments):
         cases = results.find(experiment, None, "fom")
         for setting in SETTINGS:
@@ -159,7 +159,8 @@ def times_over_cores(results, folder, measure, number, label):
             ranks, values = zip(*((rank, figures[measure]) for rank, figures in points))
             everything.update(ranks)
             colour = "k" if case.setting is None else COLOURS[case.setting]
-            marker = {"fom": "o", "gnat": "s", "lspg": "^", "galerkin": "v"}[case.method]
+            machine = case.run.report["provenance"]["cores"]
+            marker = "X" if case.printed else {"fom": "o", "gnat": "s", "lspg": "^", "galerkin": "v"}[case.method]
             style = ":" if case.printed else "--" if case.tolerance == "1e-2" else "-"
             words = [METHOD_TITLES[case.method], SETTING_TITLES.get(case.setting, ""), case.tolerance or "",
                      "as printed" if case.printed else ""]
@@ -170,7 +171,7 @@ def times_over_cores(results, folder, measure, number, label):
         axis.grid(alpha=0.3, which="both")
     for axis in axes.flat[: len(results.experiments)]:
         axis.set_xticks(sorted(everything) or [1])
-        axis.set_xlabel("cores (one rank each); this machine has no more" if axis in axes[-1] else "cores")
+        axis.set_xlabel(f"cores used, one rank each; this machine has {machine}")
     for axis in axes.flat[len(results.experiments) :]:
         axis.set_visible(False)
     handles, labels = axes.flat[0].get_legend_handles_labels()
