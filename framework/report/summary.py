@@ -40,36 +40,50 @@ def field_error(full, reduced, reduction_file):
     return 100 * np.linalg.norm(approximate - states) / np.linalg.norm(rise)
 
 
-def summarise(folder):
-    folder = pathlib.Path(folder)
-    full, reduced = RunFolder(folder / "fom"), RunFolder(folder / "gnat")
-    fom, gnat = run_figures(full), run_figures(reduced)
-    pairs = full.report["method"]["model"]["pairs"]
-    residuals = full.report["solve"]["residuals"]
-    fom["particles"] = full.report["method"]["particles"]
-    fom["neighbours_per_particle"] = pairs / fom["particles"]
-    fom["ns_cpu_per_pair"] = 1e9 * fom["cpu_s"] / (residuals * pairs)
+def full_order_figures(full):
+    """What a full-order run says of itself, per pair of neighbours as well."""
+    figures = run_figures(full)
+    method = full.report["method"]
+    pairs = method["model"]["pairs"]
+    figures["particles"] = method["particles"]
+    figures["neighbours_per_particle"] = pairs / figures["particles"]
+    figures["ns_cpu_per_pair"] = 1e9 * figures["cpu_s"] / (full.report["solve"]["residuals"] * pairs)
+    return figures
+
+
+def reduced_figures(reduced, particles):
+    """What a reduced run of any method says of itself; hyper-reduced ones tell their sample mesh as well."""
+    figures = run_figures(reduced)
     method = reduced.report["method"]
-    gnat.update(
-        time_windows=method["time_windows"],
-        basis_rank=method["basis_rank"],
-        residual_rank=method["residual_rank"],
-        sampled=method["sampled"],
-        sources=method["sources"],
-        touched_percent=100 * method["sources"] / fom["particles"],
-        held_percent=100 * method["held"] / fom["particles"],
-        sigma_min=method["sigma_min"],
-    )
+    figures.update(time_windows=method["time_windows"], basis_rank=method["basis_rank"])
+    if "sampled" in method:
+        figures.update(
+            residual_rank=method["residual_rank"],
+            sampled=method["sampled"],
+            sources=method["sources"],
+            touched_percent=100 * method["sources"] / particles,
+            held_percent=100 * method["held"] / particles,
+            sigma_min=method["sigma_min"],
+        )
+    return figures
+
+
+def compare_runs(full, reduced, reduction_file):
+    """The figures of a full-order run, of a reduced run of the same case under the name of its method, and what lies
+    between them."""
+    fom = full_order_figures(full)
+    name = reduced.report["run"]["method"]
+    figures = reduced_figures(reduced, fom["particles"])
     errors = probe_errors(full, reduced)
     provenance = full.report["provenance"]
     return {
         "title": full.report["run"]["title"],
         "fom": fom,
-        "gnat": gnat,
+        name: figures,
         "speedup": {
-            "wall": fom["wall_s"] / gnat["wall_s"],
-            "cpu": fom["cpu_s"] / gnat["cpu_s"],
-            "wall_with_setup": (fom["wall_s"] + fom["setup_wall_s"]) / (gnat["wall_s"] + gnat["setup_wall_s"]),
+            "wall": fom["wall_s"] / figures["wall_s"],
+            "cpu": fom["cpu_s"] / figures["cpu_s"],
+            "wall_with_setup": (fom["wall_s"] + fom["setup_wall_s"]) / (figures["wall_s"] + figures["setup_wall_s"]),
         },
         "probes": {
             name: {
@@ -80,12 +94,17 @@ def summarise(folder):
         },
         "worst_probe_error_percent": float(max(e["percent"].max() for e in errors.values())),
         "worst_probe_error_percent_of_rise": float(max(e["percent_of_rise"].max() for e in errors.values())),
-        "field_l2_error_percent": float(field_error(full, reduced, folder / "reduction.h5")),
+        "field_l2_error_percent": float(field_error(full, reduced, reduction_file)),
         "commit": provenance["commit"],
         "machine": f"{provenance['processor']}, {provenance['cores']} cores",
         "blas": provenance.get("openblas", provenance["blas"]),
         "build_flags": provenance["build_flags"],
     }
+
+
+def summarise(folder):
+    folder = pathlib.Path(folder)
+    return compare_runs(RunFolder(folder / "fom"), RunFolder(folder / "gnat"), folder / "reduction.h5")
 
 
 def table(summary):
