@@ -21,6 +21,10 @@ Specification time_specification() {
 Specification checkpoint_specification() {
   Specification specification;
   specification.integer("every", "steps between two checkpoints").at_least(1).defaults_to(500);
+  specification.real("pause", "least wall time between two checkpoints: a run shorter than that needs none")
+      .unit("s")
+      .at_least(0)
+      .defaults_to(0.0);
   return specification;
 }
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_ParameterList.hpp>
 #include <Teuchos_TimeMonitor.hpp>
+#include <Tpetra_Map.hpp>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +19,30 @@ void show(const Moment& moment, const std::vector<Observer*>& observers, Teuchos
   const Teuchos::TimeMonitor timer(time);
   for (Observer* observer : observers) observer->observe(moment);
 }
+
+/// Tells after which steps a checkpoint is written; the same on every rank.
+class Checkpoints {
+ public:
+  Checkpoints(const TimeSpan& span, const Communicator& communicator)
+      : span_(span), communicator_(communicator), last_(Clock::now()) {}
+
+  bool due(int step) {
+    if (span_.checkpoint_every == 0) return false;
+    if (step % span_.checkpoint_every != 0 && step != span_.last_step) return false;
+    if (span_.checkpoint_pause == 0.0) return true;
+    const std::chrono::duration<double> since = Clock::now() - last_;
+    int due = since.count() >= span_.checkpoint_pause ? 1 : 0;
+    Teuchos::broadcast(communicator_, 0, &due);
+    if (due == 1) last_ = Clock::now();
+    return due == 1;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const TimeSpan& span_;
+  const Communicator& communicator_;
+  Clock::time_point last_;
+};
 
 }  // namespace
 
@@ -35,13 +62,15 @@ TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
   TimeSpan span{step, 0, static_cast<int>(count)};
   if (input.isSublist("output") && input.sublist("output").isSublist("checkpoint")) {
     span.checkpoint_every = input.sublist("output").sublist("checkpoint").get<int>("every");
+    span.checkpoint_pause = input.sublist("output").sublist("checkpoint").get<double>("pause");
   }
   return span;
 }
 
-LoopTotals run_time_loop(Method&, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
                          const std::vector<Observer*>& observers) {
   LoopTotals totals;
+  Checkpoints checkpoints(span, *method.particles()->getComm());
   // Looked up once: a reduced step takes about as long as a look-up by name.
   const Teuchos::RCP<Teuchos::Time> step_time = Teuchos::TimeMonitor::getNewCounter("kiln: time step");
   const Teuchos::RCP<Teuchos::Time> observer_time = Teuchos::TimeMonitor::getNewCounter("kiln: observers");
@@ -59,8 +88,7 @@ LoopTotals run_time_loop(Method&, TimeScheme& scheme, VectorView x, const TimeSp
     totals.residuals += solve.residuals;
     totals.iterations += solve.iterations;
     totals.capped_steps += solve.converged ? 0 : 1;
-    const bool checkpoint = span.checkpoint_every > 0 && (step % span.checkpoint_every == 0 || step == span.last_step);
-    show({step, span.last_step, time, x, solve, checkpoint}, observers, *observer_time);
+    show({step, span.last_step, time, x, solve, checkpoints.due(step)}, observers, *observer_time);
   }
   return totals;
 }

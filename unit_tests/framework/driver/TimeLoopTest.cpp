@@ -72,6 +72,33 @@ TEST(TimeLoop, ObserversSeeEveryMoment) {
   EXPECT_EQ(rest.steps, (std::vector<int>{3, 4})) << "a continued run has shown its first moment already";
 }
 
+TEST(TimeLoop, CheckpointsAreDueAsAsked) {
+  class Marks : public Observer {
+   public:
+    void begin() override {}
+    void observe(const Moment& moment) override {
+      if (moment.checkpoint) steps.push_back(moment.step);
+    }
+    void finish(RunReport&) override {}
+    std::vector<int> steps;
+  };
+  const auto method = chain(100);
+  const auto time_scheme = scheme("backward euler", *method, 0.1);
+  const VectorView x = initial(*method);
+  const auto due = [&](const TimeSpan& span) {
+    Marks marks;
+    time_scheme->start(x, 0.1 * span.first_step);
+    run_time_loop(*method, *time_scheme, x, span, {&marks});
+    return marks.steps;
+  };
+  EXPECT_EQ(due({0.1, 0, 7, 3}), (std::vector<int>{3, 6, 7}));
+  EXPECT_EQ(due({0.1, 2, 7, 4}), (std::vector<int>{4, 7}));
+  EXPECT_TRUE(due({0.1, 0, 7}).empty());
+  // A pause no run of seven steps lasts, and one that every step does.
+  EXPECT_TRUE(due({0.1, 0, 7, 3, 1e6}).empty());
+  EXPECT_EQ(due({0.1, 0, 7, 3, 1e-12}), (std::vector<int>{3, 6, 7}));
+}
+
 TEST(TimeLoop, CappedStepsAreCounted) {
   const auto method = chain(2);
   const auto time_scheme = scheme("backward euler", *method, 0.1);
