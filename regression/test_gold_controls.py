@@ -83,11 +83,11 @@ class ControlsTest(KilnTest):
         self.fails("solve.json", "DIFFERS residuals", "1 beyond 1e-11")
 
     def test_another_sample(self):
-        self.edit("training/samples.csv", 5, 0, lambda particle: str(int(particle) + 1))
+        self.edit("training/samples.csv", 5, 1, lambda particle: str(int(particle) + 1))
         self.fails("training", "DIFFERS samples.csv:particle", "line 5")
 
     def test_perturbed_singular_value(self):
-        self.perturb("training/basis.csv", 4, 2)
+        self.perturb("training/basis.csv", 4, 3)
         self.fails("training", "DIFFERS basis.csv:relative singular value", "vector = 2")
 
     def test_not_a_number(self):
