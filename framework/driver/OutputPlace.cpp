@@ -17,7 +17,9 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-bool leads_out(const fs::path& path, const fs::path& home) { return !is_below(fs::weakly_canonical(path), home); }
+bool leads_out(const fs::path& path, const fs::path& home) {
+  return !is_below(fs::weakly_canonical(home / path), home);
+}
 
 /// What is wrong with a folder of results; empty: nothing.
 std::string problem_of(const fs::path& folder, const fs::path& home) {

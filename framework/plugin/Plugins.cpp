@@ -5,16 +5,22 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <thread>
 
 #include "framework/base/Error.hpp"
+#include "framework/driver/ExitStatus.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugin.hpp"
+#include "framework/registry/Library.hpp"
 #include "framework/registry/Registry.hpp"
-#include "framework/report/Hash.hpp"
+#include "framework/report/Sha256.hpp"
 
 namespace kiln::plugins {
 namespace {
@@ -97,21 +103,46 @@ std::string dl_message() {
   return message == nullptr ? "the system does not say why" : message;
 }
 
-/// Lets the system load the library, whose initialisers register its components.
-void open(const std::string& path) {
-  catalogue::begin_library(path);
-  std::string problem;
+/// What is being loaded now, for the handler below.
+struct Opening {
+  std::string path, place;
+  int rank = 0;
+} opening;
+
+/// The system's loader lets no exception through, so that one of an initialiser of the library ends Kiln: with a
+/// message and a status like any other.
+[[noreturn]] void end_in_initialiser() {
+  std::string why = "without a message";
   try {
-    void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr) {
-      problem = "cannot be loaded: " + dl_message();
-    } else if (dlsym(handle, "kiln_plugin") == nullptr) {
-      problem = "does not export what KILN_PLUGIN() defines";
-    }
+    if (const std::exception_ptr failure = std::current_exception()) std::rethrow_exception(failure);
   } catch (const std::exception& error) {
-    problem = fmt::format("cannot be loaded, an initialiser of it fails: {}", error.what());
+    why = error.what();
   } catch (...) {
-    problem = "cannot be loaded, an initialiser of it fails without a message";
+    // Something else than an exception has nothing to say.
+  }
+  if (opening.rank == 0) {
+    const FileError error(opening.place, opening.path, "cannot be loaded: an initialiser of it fails: " + why);
+    std::fprintf(stderr, "%s\n", error.what());
+    std::fflush(stderr);
+  } else {
+    // mpirun ends the other ranks at once when one goes; the first must have spoken.
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+  }
+  std::_Exit(exit_bad_input);
+}
+
+/// Lets the system load the library, whose initialisers register its components.
+void open(const std::string& path, const std::string& place, int rank) {
+  opening = {path, place, rank};
+  catalogue::set_library(path);
+  const std::terminate_handler handler = std::set_terminate(end_in_initialiser);
+  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  std::set_terminate(handler);
+  std::string problem;
+  if (library == nullptr) {
+    problem = "cannot be loaded: " + dl_message();
+  } else if (dlsym(library, "kiln_plugin") == nullptr) {
+    problem = "does not export what KILN_PLUGIN() defines";
   }
   const std::vector<std::string> clashes = catalogue::end_library(!problem.empty());
   if (!problem.empty()) throw FileError(path, "", problem);
@@ -159,7 +190,7 @@ std::string load(const std::string& name, const fs::path& folder, const std::str
       throw FileError(plugin.file, "",
                       fmt::format("is another file on rank {} than on rank 0", communicator.getRank()));
     }
-    open(plugin.file);
+    open(plugin.file, place, communicator.getRank());
   });
   known.push_back(plugin);
   return plugin.file;

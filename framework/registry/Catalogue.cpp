@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "framework/registry/Library.hpp"
 #include "framework/registry/Nearest.hpp"
 #include "framework/registry/Registry.hpp"
 
@@ -69,7 +70,7 @@ std::vector<std::string> names(const std::string& category) {
   return result;
 }
 
-void begin_library(std::string library) {
+void set_library(std::string library) {
   store().library = std::move(library);
   store().clashes.clear();
 }

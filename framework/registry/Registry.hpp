@@ -36,12 +36,8 @@ const Registration& find(const std::string& category, const std::string& name, c
 /// Sorted by category, then name.
 std::vector<const Registration*> all();
 std::vector<std::string> names(const std::string& category);
-/// What is registered until end_library() comes with this plugin. A name that exists already does not throw meanwhile,
-/// since registrations run inside the system's loader, which no exception may cross.
-void begin_library(std::string library);
-/// The names that existed already, each with both origins. If there are any, or the library failed to load otherwise,
-/// none of its registrations is kept.
-std::vector<std::string> end_library(bool failed);
+/// Name of the library whose registrations run now; set while a plugin is loaded.
+void set_library(std::string library);
 }  // namespace catalogue
 
 /// Creates the components of one kind by name. A component is a class with

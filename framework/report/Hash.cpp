@@ -1,15 +1,12 @@
 #include "framework/report/Hash.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <xxhash.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "framework/base/Error.hpp"
@@ -36,17 +33,6 @@ std::string hash_of_file(const std::filesystem::path& path) {
   }
   if (file.bad() || !file.eof()) throw FileError(path.string(), "", "cannot be read to its end");
   return hexadecimal(XXH3_128bits_digest(state.get()));
-}
-
-std::string sha256_of(std::string_view bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("OpenSSL computes no SHA-256");
-  }
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-  return text;
 }
 
 }  // namespace kiln

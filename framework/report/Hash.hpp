@@ -11,7 +11,4 @@ std::string hash_of(std::string_view bytes);
 /// Of a file's bytes, read in pieces. Throws FileError. Not collective.
 std::string hash_of_file(const std::filesystem::path& path);
 
-/// SHA-256 as 64 hexadecimal digits, as sha256sum prints it.
-std::string sha256_of(std::string_view bytes);
-
 }  // namespace kiln
