@@ -46,8 +46,8 @@ time:
 method: {type: plugin method}
 reduction:
   type: plugin trainer
-  basis: {rank: 4}
-  residual_basis: {rank: 6}
+  basis: {rank: 3}
+  residual_basis: {rank: 4}
   sampling: {type: plugin sampling, samples: 20}
 output:
   directory: results
@@ -149,7 +149,7 @@ class LoadingTest(PluginsTest):
     def test_keys_of_plugins_are_checked_as_all_others(self):
         shutil.copy(EVERY_CATEGORY, self.folder)
         self.write(case().replace("flux: 1e7 W/m^2", "flux: 1e7 W, fluks: 1"))
-        self.refused("check", "case.yaml", lines=2, words=("case.yaml:10:", "fluks: unknown key", "a power (W)"))
+        self.refused("check", "case.yaml", lines=2, words=("case.yaml:10:", "fluks: unknown key", "'1e7 W' is a power"))
 
     def test_loaded_only_if_named(self):
         shutil.copy(EVERY_CATEGORY, self.folder)
@@ -246,14 +246,9 @@ class RefusedTest(PluginsTest):
     def test_cut_short(self):
         whole = EVERY_CATEGORY.read_bytes()
         cut = self.folder / "cut.so"
-        mark = whole.index(b"kiln plugin for: ")
-        for size in (mark + 200, len(whole) // 2):
+        for size in (4, 63, 64, 500, len(whole) // 10, len(whole) // 2):
             cut.write_bytes(whole[:size])
-            outcome = self.kiln("list", "--plugin", cut)
-            # A library may be whole enough to load.
-            self.assertIn(outcome.status, (0, 2), outcome.stderr)
-        cut.write_bytes(whole[: mark + 200])
-        self.refuses(cut, "cannot be loaded: ")
+            self.refuses(cut, "is cut short")
 
     def test_missing_symbol(self):
         self.refuses(PLUGINS / "libmissing_symbol.so", "cannot be loaded: ", "a_function_nobody_has", ranks=(1, 2))

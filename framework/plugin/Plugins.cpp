@@ -18,6 +18,7 @@
 #include "framework/driver/ExitStatus.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugin.hpp"
+#include "framework/plugin/SharedLibrary.hpp"
 #include "framework/registry/Library.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Sha256.hpp"
@@ -82,11 +83,8 @@ std::string read(const std::string& path) {
 
 /// Refuses what is no plugin, or one for another Kiln, by its bytes alone.
 void require_same_abi(const std::string& path, const std::string& bytes) {
-  if (bytes.compare(0, 4,
-                    "\x7f"
-                    "ELF") != 0) {
-    throw FileError(path, "", "is no shared library", "a plugin built with kiln_add_plugin");
-  }
+  const std::string problem = shared_library_problem(bytes);
+  if (!problem.empty()) throw FileError(path, "", problem, "a plugin built with kiln_add_plugin");
   const std::string mark = KILN_ABI_MARK;
   const std::size_t at = bytes.find(mark + "Kiln ");
   if (at == std::string::npos) {
