@@ -4,6 +4,8 @@
 function(kiln_add_plugin name)
   add_library(${name} MODULE ${ARGN})
   target_link_libraries(${name} PRIVATE Kiln::kiln)
+  # So that an installed plugin finds libraries of its own.
+  set_target_properties(${name} PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   target_compile_options(${name} PRIVATE ${KILN_CODE_OPTIONS})
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     target_compile_options(${name} PRIVATE -O3 -DNDEBUG)

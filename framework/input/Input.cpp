@@ -46,22 +46,22 @@ Checked check(const std::string& file, Parsed& parsed, const Specification& spec
 }
 
 /// Does `work` on rank 0, and then on the other ranks with what the file system told rank 0. It is a pure function of
-/// what `files` answers, so every rank comes to the same end. Collective.
+/// what the files answer, so every rank comes to the same end. Collective.
 template <class Work>
-auto on_every_rank(const Communicator& communicator, InputFiles& files, Work&& work) {
+auto on_every_rank(const Communicator& communicator, std::optional<InputFiles>& files, Work&& work) {
   if (communicator.getRank() != 0) {
     files = InputFiles::receive(communicator);
-    return work();
+    return work(*files);
   }
-  std::optional<decltype(work())> result;
+  std::optional<decltype(work(*files))> result;
   std::exception_ptr failure;
   try {
-    result = work();
+    result = work(*files);
   } catch (...) {
     // The other ranks wait for the files whatever happened here.
     failure = std::current_exception();
   }
-  files.send(communicator);
+  files->send(communicator);
   if (failure) std::rethrow_exception(failure);
   return std::move(*result);
 }
@@ -93,12 +93,16 @@ std::vector<std::string> load_plugins(const std::string& file, YamlNode& root, c
 Input Input::read(const std::string& file, const std::vector<std::string>& overrides,
                   const Specification& specification, const Communicator& communicator,
                   const std::vector<std::string>& promised) {
-  InputFiles files;
-  for (const std::string& path : promised) files.promise(path);
-  Parsed parsed = on_every_rank(communicator, files, [&] { return parse(file, overrides, files); });
+  std::optional<InputFiles> files;
+  if (communicator.getRank() == 0) {
+    files.emplace();
+    for (const std::string& path : promised) files->promise(path);
+  }
+  Parsed parsed = on_every_rank(communicator, files, [&](InputFiles& known) { return parse(file, overrides, known); });
   std::vector<std::string> libraries;
   if (has_key(specification, "plugins")) libraries = load_plugins(file, parsed.root, communicator);
-  Checked checked = on_every_rank(communicator, files, [&] { return check(file, parsed, specification, files); });
+  Checked checked =
+      on_every_rank(communicator, files, [&](InputFiles& known) { return check(file, parsed, specification, known); });
   Input input;
   input.file_ = file;
   input.list_ = std::move(checked.list);
