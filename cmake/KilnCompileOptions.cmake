@@ -3,14 +3,17 @@ add_library(kiln_options INTERFACE)
 target_compile_features(kiln_options INTERFACE cxx_std_17)
 target_include_directories(kiln_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
 target_compile_options(kiln_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wno-unknown-pragmas
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wno-unknown-pragmas)
+# What code is generated: plugins take the same (KilnAddPlugin.cmake).
+set(KILN_CODE_OPTIONS
   # `#pragma omp simd` marks sums that may be reordered for vector units; nothing else of OpenMP is used.
   -fopenmp-simd
   # Kiln reads neither errno after a math function nor floating-point traps; NaN and infinity keep their meaning.
   -fno-math-errno -fno-trapping-math)
 if(KILN_NATIVE)
-  target_compile_options(kiln_options INTERFACE -march=native)
+  list(APPEND KILN_CODE_OPTIONS -march=native)
 endif()
+target_compile_options(kiln_options INTERFACE ${KILN_CODE_OPTIONS})
 if(KILN_WARNINGS_AS_ERRORS)
   target_compile_options(kiln_options INTERFACE -Werror)
 endif()

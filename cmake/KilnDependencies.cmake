@@ -10,6 +10,7 @@ find_package(fmt CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 find_package(CLI11 CONFIG REQUIRED)
 find_package(muparser CONFIG REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 set(HDF5_PREFER_PARALLEL ON)
@@ -29,6 +30,6 @@ target_include_directories(kiln_dependencies SYSTEM INTERFACE ${Belos_INCLUDE_DI
 target_link_libraries(kiln_dependencies INTERFACE
   trilinos_belostpetra trilinos_belos ${Tpetra_LIBRARIES}
   ${HDF5_LIBRARIES} ${YAML_CPP_LIBRARIES} LAPACK::LAPACK MPI::MPI_CXX fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11
-  muparser::muparser PkgConfig::XXHASH ${CMAKE_DL_LIBS})
+  muparser::muparser PkgConfig::XXHASH OpenSSL::Crypto ${CMAKE_DL_LIBS})
 # Open MPI's deprecated C++ bindings are not used; leaving them out saves a library at run time.
 target_compile_definitions(kiln_dependencies INTERFACE OMPI_SKIP_MPICXX=1)

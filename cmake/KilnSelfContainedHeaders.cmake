@@ -1,8 +1,6 @@
 # kiln_self_contained_headers: compiles each header alone, so that including one never depends on what came before it.
-file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-     ${PROJECT_SOURCE_DIR}/framework/*.hpp ${PROJECT_SOURCE_DIR}/physics/*.hpp ${PROJECT_SOURCE_DIR}/rom/*.hpp)
 set(header_sources)
-foreach(header IN LISTS headers)
+foreach(header IN LISTS KILN_HEADERS)
   string(REPLACE "/" "_" name ${header})
   set(source ${PROJECT_BINARY_DIR}/self_contained/${name}.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n#include \"${header}\"\n" @ONLY)
@@ -10,3 +8,5 @@ foreach(header IN LISTS headers)
 endforeach()
 add_library(kiln_self_contained_headers OBJECT EXCLUDE_FROM_ALL ${header_sources})
 target_link_libraries(kiln_self_contained_headers PRIVATE kiln_options)
+target_include_directories(kiln_self_contained_headers PRIVATE ${KILN_GENERATED_DIR})
+add_dependencies(kiln_self_contained_headers kiln_interface)

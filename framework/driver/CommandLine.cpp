@@ -18,6 +18,7 @@
 #include "framework/driver/Study.hpp"
 #include "framework/driver/StudySpecification.hpp"
 #include "framework/files/Compare.hpp"
+#include "framework/plugin/Plugins.hpp"
 #include "framework/registry/Describe.hpp"
 #include "framework/registry/Nearest.hpp"
 #include "framework/report/Provenance.hpp"
@@ -34,11 +35,35 @@ void print(const Communicator& communicator, const std::string& text) {
   }
 }
 
+void add_outside_flag(CLI::App* command, bool& allow_outside) {
+  command->add_flag("--allow-outside", allow_outside,
+                    "let the file send results out of the current folder: an absolute folder, '..', links");
+}
+
+/// What is loaded before a command looks at any component.
+struct PluginOptions {
+  std::vector<std::string> files;
+  bool none = false;
+
+  void add_to(CLI::App* command) {
+    CLI::Option* const plugin =
+        command->add_option("--plugin", files, "load a plugin: a shared library that adds components")
+            ->type_name("FILE")
+            ->allow_extra_args(false);
+    command->add_flag("--no-plugins", none, "refuse inputs that name plugins")->excludes(plugin);
+  }
+  void load(const Communicator& communicator) const {
+    if (none) plugins::forbid();
+    for (const std::string& file : files) plugins::load(file, "", "--plugin", communicator);
+  }
+};
+
 void add_input_options(CLI::App* command, CommandOptions& options) {
   command->add_option("FILE", options.file, "input file (YAML)")->required();
   command->add_option("--set", options.overrides, "change one entry of the input, e.g. --set method.type=gnat")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
+  add_outside_flag(command, options.allow_outside);
 }
 
 /// A finite number of at least 0; the library's own check lets NaN pass.
@@ -97,6 +122,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   double floor = 0.0;
   std::vector<std::string> own_tolerances;
   std::function<int()> command;
+  PluginOptions plugin_options;
 
   CLI::App* run_app = app.add_subcommand("run", "Run an input: full order or reduced, as its `method` says");
   add_input_options(run_app, options);
@@ -131,6 +157,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
       ->type_name("GLOB")
       ->allow_extra_args(false);
   study_app->add_flag("--list", list_only, "print the cases with their states; run nothing");
+  add_outside_flag(study_app, study_options.allow_outside);
   study_app->add_flag("--quiet", study_options.quiet, "no progress; failures are told nonetheless");
   study_app->callback([&] {
     command = [&]() -> int {
@@ -149,7 +176,8 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
     };
   });
 
-  app.add_subcommand("list", "List all components: models, methods, schemes, kernels, …")->callback([&] {
+  CLI::App* list_app = app.add_subcommand("list", "List all components: models, methods, schemes, kernels, …");
+  list_app->callback([&] {
     command = [&]() -> int {
       print(*communicator, list_components());
       return exit_success;
@@ -179,6 +207,10 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
       return exit_success;
     };
   });
+
+  for (CLI::App* loads : {run_app, train_app, study_app, check_app, list_app, describe_app, template_app}) {
+    plugin_options.add_to(loads);
+  }
 
   CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
   compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required()->check(CLI::ExistingPath);
@@ -236,6 +268,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   }
 
   try {
+    plugin_options.load(*communicator);
     return command();
   } catch (...) {
     return report_failure(std::current_exception(), *communicator);

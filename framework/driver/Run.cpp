@@ -12,6 +12,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/driver/Checkpoint.hpp"
+#include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/AtomicFile.hpp"
@@ -20,6 +21,7 @@
 #include "framework/input/Input.hpp"
 #include "framework/method/Trainer.hpp"
 #include "framework/observers/ProgressObserver.hpp"
+#include "framework/plugin/Plugins.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
@@ -96,6 +98,13 @@ class Assembly {
   std::vector<std::unique_ptr<Observer>> observers_;
 };
 
+/// The libraries whose code took part, if any.
+void report_plugins(RunReport& report) {
+  for (const plugins::Loaded& plugin : plugins::loaded()) {
+    report.section("plugins").push_back({{"name", plugin.file}, {"sha256", plugin.sha256}});
+  }
+}
+
 struct Seconds {
   double wall;
   double cpu;  ///< summed over ranks
@@ -153,7 +162,14 @@ void write_report(const RunReport& report, const std::filesystem::path& folder, 
 }
 
 Input read_input(const CommandOptions& options, const Comm& communicator) {
-  return Input::read(options.file, options.overrides, run_specification(), *communicator);
+  Input input = Input::read(options.file, options.overrides, run_specification(), *communicator);
+  const Teuchos::ParameterList& list = input.list();
+  if (!options.allow_outside) {
+    require_inside(input, "output.directory",
+                   {list.sublist("output").get<std::string>("directory"), run_folder(list), training_folder(list)},
+                   *communicator);
+  }
+  return input;
 }
 
 /// A folder that goes when its owner goes.
@@ -215,6 +231,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
            {"first_step", assembly->span().first_step},
            {"step_s", assembly->span().step}};
   report.section("provenance") = provenance(*communicator);
+  report_plugins(report);
 
   std::exception_ptr failure;
   const Stopwatch loop;
@@ -248,6 +265,7 @@ void train_timed(const Stopwatch& total, const Input& input, const CommandOption
                            {"method", list.sublist("reduction").get<std::string>("type")},
                            {"status", "complete"}};
   report.section("provenance") = provenance(*communicator);
+  report_plugins(report);
   located(input, [&] {
     trainer->train(reduction_file(list), report);
     return 0;

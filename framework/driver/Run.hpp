@@ -14,6 +14,7 @@ struct CommandOptions {
   std::vector<std::string> overrides;  ///< "path.to.key=value"
   bool restart = false;                ///< continue from the run folder's checkpoint
   bool quiet = false;                  ///< no progress bar, no table
+  bool allow_outside = false;          ///< let the input file send results out of the current folder
 };
 
 /// `kiln run`: builds what the input names, marches it through its time span and writes the run folder. Throws what

@@ -45,6 +45,12 @@ Specification output_specification() {
 Specification run_specification() {
   Specification specification;
   specification.text("title", "one line that names the case in reports and pictures").defaults_to("");
+  specification
+      .texts("plugins",
+             "shared libraries that add components; looked for beside this file, in KILN_PLUGIN_PATH and in "
+             "lib/kiln/plugins "
+             "of the installation")
+      .optional();
   specification.component<Model>("model", "the full-order model: du/dt = f(u, t; µ)");
   specification.section("time", "time span, scheme and solver", time_specification());
   specification.component<Method>("method", "full order, or which reduction of it").defaults_to("fom");

@@ -10,6 +10,7 @@
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/ExitStatus.hpp"
 #include "framework/driver/Failure.hpp"
+#include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/StudyCases.hpp"
 #include "framework/driver/StudyProgress.hpp"
@@ -213,6 +214,14 @@ std::string failures_text(const Matrix& matrix) {
 int study(const StudyOptions& options, const Comm& communicator) {
   const Stopwatch watch;
   Matrix matrix(options, communicator);
+  if (!options.allow_outside) {
+    std::vector<std::filesystem::path> folders = {matrix.folder()};
+    for (std::size_t i = 0; i < matrix.cases.size(); ++i) {
+      folders.push_back(matrix.cases[i].folder);
+      folders.push_back(matrix.inputs.report_folder(i));
+    }
+    require_inside(matrix.study, "output", folders, *communicator);
+  }
   std::vector<std::size_t> incomplete;
   for (std::size_t i = 0; i < matrix.cases.size(); ++i) {
     if (matrix.selected[i] && matrix.states[i].status != CaseStatus::complete) incomplete.push_back(i);

@@ -12,6 +12,7 @@ struct StudyOptions {
   std::vector<std::string> overrides;  ///< of the study file's entries, "path.to.key=value"
   std::vector<std::string> only;       ///< shell patterns of case names, with what those cases need; none: all
   bool quiet = false;                  ///< no progress; failures are told nonetheless
+  bool allow_outside = false;          ///< let the study file send results out of the current folder
 };
 
 /// `kiln study`: runs the cases of a study file (study_specification()) one after the other on all ranks. What an

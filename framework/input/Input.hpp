@@ -20,13 +20,17 @@ class Input {
   /// Reads the file once, on rank 0. `overrides` are "path.to.key=value" texts that go through the same checks.
   /// Throws InputError with all mistakes of the file at once; their text already has file:line:column in front.
   /// `promised` are absolute paths of data files that may still be missing.
+  ///
+  /// Where the specification has the key `plugins`, the libraries it names are loaded before anything is checked, so
+  /// that their components count as known; the checked list holds their absolute paths. Throws FileError for one that
+  /// cannot be loaded (Plugins.hpp). Collective.
   static Input read(const std::string& file, const std::vector<std::string>& overrides,
                     const Specification& specification, const Communicator& communicator,
                     const std::vector<std::string>& promised = {});
 
   const Teuchos::ParameterList& list() const { return list_; }
   const std::string& file() const { return file_; }
-  /// Absolute paths of the data files the input names, and of those promised.
+  /// Absolute paths of the data files and the plugins the input names, and of the files promised.
   const std::vector<std::string>& data_files() const { return data_files_; }
   /// Where the entry stands, or its nearest enclosing block.
   Location location(const std::string& path) const;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "framework/registry/Library.hpp"
 #include "framework/registry/Nearest.hpp"
 #include "framework/registry/Registry.hpp"
 
@@ -13,7 +14,8 @@ namespace {
 struct Store {
   // Addresses stay valid while plugins add more.
   std::vector<std::unique_ptr<Registration>> registrations;
-  std::string library;
+  std::string library;               ///< whose registrations run now; empty: Kiln's own
+  std::vector<std::string> clashes;  ///< of that library
 };
 
 Store& store() {
@@ -22,16 +24,22 @@ Store& store() {
   return instance;
 }
 
+std::string origin(const Registration& registration) {
+  const std::string place = fmt::format("{}:{}", registration.file, registration.line);
+  return registration.library.empty() ? place : fmt::format("{} ({})", registration.library, place);
+}
+
 }  // namespace
 
 void add(Registration registration) {
   registration.library = store().library;
   for (const auto& known : store().registrations) {
-    if (known->category == registration.category && known->name == registration.name) {
-      throw std::logic_error(fmt::format("{} '{}' is registered twice: {}:{} and {}:{}", registration.category,
-                                         registration.name, known->file, known->line, registration.file,
-                                         registration.line));
-    }
+    if (known->category != registration.category || known->name != registration.name) continue;
+    const std::string clash = fmt::format("{} '{}' is registered twice: {} and {}", registration.category,
+                                          registration.name, origin(*known), origin(registration));
+    if (registration.library.empty()) throw std::logic_error(clash);
+    store().clashes.push_back(clash);
+    return;
   }
   store().registrations.push_back(std::make_unique<Registration>(std::move(registration)));
 }
@@ -62,6 +70,20 @@ std::vector<std::string> names(const std::string& category) {
   return result;
 }
 
-void set_library(std::string library) { store().library = std::move(library); }
+void set_library(std::string library) {
+  store().library = std::move(library);
+  store().clashes.clear();
+}
+
+std::vector<std::string> end_library(bool failed) {
+  auto& known = store().registrations;
+  if (failed || !store().clashes.empty()) {
+    known.erase(
+        std::remove_if(known.begin(), known.end(), [](const auto& entry) { return entry->library == store().library; }),
+        known.end());
+  }
+  store().library.clear();
+  return std::move(store().clashes);
+}
 
 }  // namespace kiln::catalogue

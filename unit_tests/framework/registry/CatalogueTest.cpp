@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/input/Units.hpp"
+#include "framework/registry/Library.hpp"
 #include "framework/registry/Nearest.hpp"
 #include "unit_tests/framework/input/TestComponents.hpp"
 
@@ -28,6 +29,37 @@ TEST(Catalogue, RefusesANameTwice) {
     EXPECT_NE(text.find("TestComponents.cpp:" + std::to_string(line) + " and Again.cpp:7"), std::string::npos) << text;
   }
   EXPECT_EQ(catalogue::names(Kernel::category).size(), 2u);
+}
+
+Specification no_keys() { return {}; }
+
+Registration kernel_of_a_plugin(const char* name, int line) {
+  return {Kernel::category, name, "from outside", &no_keys, "Plugin.cpp", line, {}, {}, {}};
+}
+
+TEST(Catalogue, KnowsWhichPluginAComponentCameWith) {
+  catalogue::set_library("/there/plugin.so");
+  catalogue::add(kernel_of_a_plugin("outer spline", 3));
+  EXPECT_EQ(catalogue::end_library(false), std::vector<std::string>{});
+  EXPECT_EQ(catalogue::find(Kernel::category, "outer spline", "").library, "/there/plugin.so");
+  EXPECT_EQ(catalogue::find(Kernel::category, "conic spline", "").library, "");
+  // A library that fails after all takes its components along, and no others.
+  catalogue::set_library("/there/plugin.so");
+  EXPECT_EQ(catalogue::end_library(true), std::vector<std::string>{});
+  EXPECT_EQ(catalogue::names(Kernel::category), (std::vector<std::string>{"conic spline", "wendland c9"}));
+}
+
+TEST(Catalogue, APluginWithATakenNameLeavesNothingBehind) {
+  catalogue::set_library("/there/plugin.so");
+  catalogue::add(kernel_of_a_plugin("outer spline", 3));
+  EXPECT_NO_THROW(catalogue::add(kernel_of_a_plugin("wendland c9", 4)));
+  const std::vector<std::string> clashes = catalogue::end_library(false);
+  ASSERT_EQ(clashes.size(), 1u);
+  EXPECT_NE(clashes[0].find("test kernel 'wendland c9' is registered twice: "), std::string::npos) << clashes[0];
+  EXPECT_NE(clashes[0].find("TestComponents.cpp:"), std::string::npos) << clashes[0];
+  EXPECT_NE(clashes[0].find("/there/plugin.so (Plugin.cpp:4)"), std::string::npos) << clashes[0];
+  EXPECT_EQ(catalogue::names(Kernel::category), (std::vector<std::string>{"conic spline", "wendland c9"}));
+  EXPECT_THROW(catalogue::add(kernel_of_a_plugin("wendland c9", 4)), std::logic_error) << "Kiln's own again";
 }
 
 TEST(Catalogue, SuggestsTheNearestName) {

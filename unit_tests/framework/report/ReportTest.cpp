@@ -13,6 +13,7 @@
 #include "framework/report/Hash.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
+#include "framework/report/Sha256.hpp"
 #include "framework/report/Timing.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 
@@ -34,6 +35,11 @@ TEST(Hash, IsXxh3WithItsPublishedValues) {
   EXPECT_EQ(hash_of(""), "99aa06d3014798d86001c324468d497f");
   EXPECT_EQ(hash_of("a"), "a96faf705af16834e6c632b61e964e1f");
   EXPECT_NE(hash_of("power: 40 W"), hash_of("power: 41 W"));
+}
+
+TEST(Sha256, IsThatOfFips180) {
+  EXPECT_EQ(sha256_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 TEST(Hash, OfAFileIsThatOfItsBytes) {

@@ -1,0 +1,20 @@
+# kiln_add_plugin(NAME source…)
+# A shared library libNAME.so that `plugins: [libNAME.so]` loads, compiled as Kiln itself was. `cmake --install` puts it
+# where a Kiln of the same prefix finds it.
+function(kiln_add_plugin name)
+  add_library(${name} MODULE ${ARGN})
+  target_link_libraries(${name} PRIVATE Kiln::kiln)
+  # So that an installed plugin finds libraries of its own.
+  set_target_properties(${name} PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  target_compile_options(${name} PRIVATE ${KILN_CODE_OPTIONS})
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    target_compile_options(${name} PRIVATE -O3 -DNDEBUG)
+  endif()
+  if(KILN_SANITIZE)
+    target_compile_options(${name} PRIVATE -fsanitize=${KILN_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${name} PRIVATE -fsanitize=${KILN_SANITIZE})
+  endif()
+  if(KILN_PLUGIN_DIR)
+    install(TARGETS ${name} LIBRARY DESTINATION ${KILN_PLUGIN_DIR})
+  endif()
+endfunction()
