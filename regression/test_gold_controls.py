@@ -88,7 +88,7 @@ class ControlsTest(KilnTest):
 
     def test_perturbed_singular_value(self):
         self.perturb("training/basis.csv", 4, 3)
-        self.fails("training", "DIFFERS basis.csv:relative singular value", "vector = 2")
+        self.fails("training", "DIFFERS basis.csv:relative singular value", "line 4")
 
     def test_not_a_number(self):
         self.edit("run/field.csv", 9, 4, lambda _: "nan")
