@@ -17,7 +17,7 @@ class StudyCasesTest : public testing::Test {
     const auto communicator = Tpetra::getDefaultComm();
     const std::string file = folder_ / "study.yaml";
     if (communicator->getRank() == 0) std::ofstream(file) << "output: out\ncases:\n" + cases;
-    return expand_study(Input::read(file, {}, study_specification(), *communicator), "/work/here");
+    return expand_study(Input::read(file, {}, study_specification(), *communicator), "/some/where");
   }
 
   /// The mistakes, with the study file's folder left out.
@@ -75,7 +75,7 @@ TEST_F(StudyCasesTest, NeedsFindsTheEarlierCaseAndItsFolder) {
   EXPECT_EQ(cases[0].command, "train");
   EXPECT_EQ(cases[2].needs, 1U);
   EXPECT_EQ(cases[3].needs, 0U);
-  EXPECT_EQ(cases[2].overrides[0].text, "method.file=/work/here/out/basis-b/reduction.h5");
+  EXPECT_EQ(cases[2].overrides[0].text, "method.file=/some/where/out/basis-b/reduction.h5");
 }
 
 TEST_F(StudyCasesTest, ListsAreListsOfTheInput) {
