@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "framework/model/PointRates.hpp"
+#include "physics/sph/HeatModel.hpp"
+#include "physics/sph/PairRows.hpp"
+
+namespace kiln {
+
+#ifdef KILN_LANES
+namespace {
+
+/// The properties at eight temperatures.
+MaterialPoint<Lanes> properties_at(const MaterialTable& table, const Lanes& u) {
+  double temperature[lane_count], fraction[lane_count];
+  double low[3][lane_count], high[3][lane_count];
+  int interval[lane_count];
+  store_lanes(temperature, u);
+#pragma omp simd
+  for (int lane = 0; lane < lane_count; ++lane) {
+    interval[lane] = table.interval(temperature[lane], fraction[lane]);
+  }
+  const double* values = table.data();
+#pragma omp simd
+  for (int lane = 0; lane < lane_count; ++lane) {
+    for (int property = 0; property < 3; ++property) {
+      low[property][lane] = values[3 * interval[lane] + property];
+      high[property][lane] = values[3 * interval[lane] + 3 + property];
+    }
+  }
+  const Lanes share = lanes_at(fraction);
+  const auto between = [&](int property) {
+    const Lanes from = lanes_at(low[property]);
+    return from + share * (lanes_at(high[property]) - from);
+  };
+  return {between(0), between(1), between(2)};
+}
+
+}  // namespace
+
+/// Eight points are a vector; its lanes are the same particle in eight states. What a pair reads of its neighbour are
+/// whole vectors, so that nothing is gathered, and neighbours and weights serve eight points.
+class HeatModel::AtPoints final : public PointRates {
+ public:
+  AtPoints(HeatModel& model, const ParameterPoints& points)
+      : model_(model),
+        points_(points),
+        groups_((points.count() + lane_count - 1) / lane_count),
+        states_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "thermal states of points"),
+                groups_ * static_cast<std::size_t>(model.source_count())),
+        specific_heats_("specific heats of points", groups_ * static_cast<std::size_t>(model.row_count())),
+        absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())) {
+    if (points_.count() > 0) points_.set(0, model_.parameters_);
+  }
+
+  void rates(ConstMatrixView u, double time, MatrixView f) override {
+    if (u.extent(0) != points_.count() || f.extent(0) != points_.count()) {
+      throw std::invalid_argument("HeatModel: arrays of another number of points");
+    }
+    model_.check("rates", u.extent(1), f.extent(1));
+    if (!(time == absorbed_time_)) update_absorbed(time);
+    for (std::size_t group = 0; group < groups_; ++group) {
+      update_states(group, u);
+      sum_pairs(group, f);
+    }
+  }
+
+ private:
+  std::size_t width(std::size_t group) const {
+    return std::min<std::size_t>(lane_count, points_.count() - group * lane_count);
+  }
+
+  /// What a point absorbs does not depend on its state: one evaluation serves all iterations of a step.
+  void update_absorbed(double time) {
+    const std::size_t rows = model_.row_count();
+    for (std::size_t point = 0; point < points_.count(); ++point) {
+      points_.set(point, model_.parameters_);
+      model_.update_absorbed(time);
+      const auto absorbed = absorbed_;
+      const auto heated = model_.heated_;
+      const auto power = model_.absorbed_;
+      const std::size_t first = point / lane_count * rows, lane = point % lane_count;
+      Kokkos::parallel_for(
+          "kiln::sph::absorbed power of points", RangePolicy(0, static_cast<LocalIndex>(heated.extent(0))),
+          KOKKOS_LAMBDA(LocalIndex h) { absorbed(first + heated(h), lane) = power(heated(h)); });
+    }
+    absorbed_time_ = time;
+  }
+
+  void update_states(std::size_t group, const ConstMatrixView& u) {
+    const auto states = states_;
+    const auto specific_heats = specific_heats_;
+    const auto masses = model_.domain_.masses;
+    const MaterialTable table = model_.table_;
+    const std::size_t first_point = group * lane_count, points = width(group);
+    const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
+    Kokkos::parallel_for(
+        "kiln::sph::thermal states of points", RangePolicy(0, model_.source_count()), KOKKOS_LAMBDA(LocalIndex j) {
+          Lanes temperature = {};
+          if (points == lane_count) {
+            temperature = lanes_at(&u(first_point, j));
+          } else {
+            for (std::size_t lane = 0; lane < points; ++lane) temperature[lane] = u(first_point + lane, j);
+          }
+          const MaterialPoint<Lanes> point = properties_at(table, temperature);
+          states(first + j) = {temperature, 1.0 / point.conductivity, masses(j) / point.density};
+          if (static_cast<std::size_t>(j) < rows) {
+            store_lanes(&specific_heats(group * rows + j, 0), point.specific_heat);
+          }
+        });
+  }
+
+  void sum_pairs(std::size_t group, const MatrixView& f) {
+    const PairRows pairs(model_.domain_);
+    const auto states = states_;
+    const auto specific_heats = specific_heats_;
+    const auto absorbed = absorbed_;
+    const auto masses = model_.domain_.masses;
+    const std::size_t first_point = group * lane_count, points = width(group);
+    const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
+    Kokkos::parallel_for(
+        "kiln::sph::rates of points", RangePolicy(0, model_.row_count()), KOKKOS_LAMBDA(LocalIndex i) {
+          const StateLanes own = states(first + i);
+          const Lanes sum =
+              pair_sum_of_points(&states(first), own, pairs.sources_of(i), pairs.weights_of(i), pairs.count(i));
+          const Lanes rate = heat_rate(own.volume, lanes_at(&specific_heats(group * rows + i, 0)), sum, masses(i),
+                                       lanes_at(&absorbed(group * rows + i, 0)));
+          if (points == lane_count) {
+            store_lanes(&f(first_point, i), rate);
+          } else {
+            for (std::size_t lane = 0; lane < points; ++lane) f(first_point + lane, i) = rate[lane];
+          }
+        });
+  }
+
+  using LaneView = Kokkos::View<double* [lane_count], Kokkos::LayoutRight, Device>;
+
+  HeatModel& model_;
+  ParameterPoints points_;
+  std::size_t groups_;                        ///< of eight points each, the last one perhaps of fewer
+  Kokkos::View<StateLanes*, Device> states_;  ///< group by group: of the sources
+  LaneView specific_heats_;                   ///< group by group: of the rows
+  LaneView absorbed_;                         ///< likewise, at absorbed_time_
+  double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+std::unique_ptr<PointRates> HeatModel::at_points(const ParameterPoints& points) {
+  return std::make_unique<AtPoints>(*this, points);
+}
+#else
+std::unique_ptr<PointRates> HeatModel::at_points(const ParameterPoints& points) {
+  return one_after_the_other(*this, points);
+}
+#endif
+
+}  // namespace kiln
