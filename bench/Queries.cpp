@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <Tpetra_Core.hpp>
@@ -145,6 +146,9 @@ std::vector<Figure> measure(Queries& queries, std::size_t a_run, int runs) {
 
 /// bench_queries queries INPUT REDUCTION QUERIES FOLDER: writes FOLDER/queries.json.
 int main(int argc, char** argv) {
+  // As kiln itself does.
+  const auto set_threads = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  if (set_threads != nullptr) set_threads(1);
   Tpetra::ScopeGuard guard(&argc, &argv);
   if (argc != 6) {
     fmt::print(stderr, "bench_queries: {} arguments; expected: queries INPUT REDUCTION QUERIES FOLDER\n", argc - 1);
