@@ -122,7 +122,7 @@ std::vector<Figure> measure(Queries& queries, std::size_t a_run, int runs) {
   std::size_t run = 0;
   std::vector<double> alone;
   double difference = 0.0;
-  works.emplace_back([&] { alone = queries.alone(all.part(run * a_run, a_run)); });
+  if (std::getenv("SKIP_ALONE") == nullptr) works.emplace_back([&] { alone = queries.alone(all.part(run * a_run, a_run)); });
   for (const std::size_t width : widths) {
     works.emplace_back([&, width] {
       const std::vector<double> together = queries.together(all.part(run * a_run, a_run), width);

@@ -64,8 +64,6 @@ class MaterialTable {
     fraction = place - inside;
     return inside;
   }
-  /// k, c, ρ of each table temperature, one after the other, in the execution space's memory.
-  KOKKOS_FORCEINLINE_FUNCTION const double* data() const { return values_.data(); }
 
   /// d/du of the properties, per K: those of the interval u lies in, 0 outside the table.
   KOKKOS_INLINE_FUNCTION MaterialPoint<double> slopes(double u) const {

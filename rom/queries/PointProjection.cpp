@@ -29,7 +29,6 @@ PointProjection::PointProjection(Projection& projection, const ParameterPoints& 
       norms_(points.count()),
       iterates_(points.count()),
       point_state_("kiln::rom::state of a point", states_.size()),
-      unit_("kiln::rom::unit vector", size_),
       jacobian_tangent_("kiln::rom::J Phi of a point", rows_, size_),
       small_("kiln::rom::reduced Jacobian of a point", size_, size_),
       inverse_("kiln::rom::transposed inverse reduced Jacobian of a point", size_, size_) {}
@@ -42,7 +41,7 @@ void PointProjection::evaluate(ConstMatrixView x, double time, MatrixView u, Mat
 
 void PointProjection::linearise_point(std::size_t point, const StepResidual& residual) {
   const double alpha = residual.alpha, gamma = residual.gamma;
-  const ConstMatrixView tangent = trial_.tangent(unit_);
+  const ConstMatrixView tangent = states_.tangent();
   const ConstMatrixView tangent_rows = dense::row_block(tangent, 0, rows_);
   if (gamma != 0.0) {
     points_.set(point, model_.parameters());
@@ -61,12 +60,7 @@ void PointProjection::linearise_point(std::size_t point, const StepResidual& res
   dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test, jacobian_tangent_, 0.0, small_);
   dense::LuFactors factors;
   Projection::require_regular(factors.factor(small_), residual.time);
-  for (std::size_t k = 0; k < size_; ++k) {
-    Kokkos::deep_copy(unit_, 0.0);
-    unit_(k) = 1.0;
-    factors.solve(unit_);
-    for (std::size_t i = 0; i < size_; ++i) inverse_(k, i) = unit_(i);
-  }
+  factors.inverse_transposed(inverse_);
   test_.put(point, test);
   inverse_transposed_.put(point, inverse_);
 }

@@ -70,7 +70,7 @@ class PointProjection {
   std::vector<char> iterates_;    ///< of each point: 1 until it has converged
 
   // Of one point.
-  VectorView point_state_, unit_;
+  VectorView point_state_;
   MatrixView jacobian_tangent_, small_, inverse_;
 };
 

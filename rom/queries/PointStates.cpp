@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/model/PointRates.hpp"
-#include "rom/linear_algebra/Dense.hpp"
+#include "rom/queries/PointProducts.hpp"
 
 namespace kiln {
 
@@ -27,8 +27,7 @@ void PointStates::begin(ConstMatrixView x) {
 }
 
 void PointStates::states(ConstMatrixView x, MatrixView u) const {
-  std::copy_n(beginning_.data(), beginning_.size(), u.data());
-  dense::product(dense::Transpose::no, dense::Transpose::yes, 1.0, own_coordinates(x, space_), tangent_, 1.0, u);
+  PointProduct(tangent_).add(beginning_, own_coordinates(x, space_), u);
 }
 
 }  // namespace kiln

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "rom/basis/TrialSpace.hpp"
 
 namespace kiln {
@@ -16,6 +18,8 @@ class PointStates {
   /// Takes b_p from the coordinates of windows past.
   void begin(ConstMatrixView x);
   void states(ConstMatrixView x, MatrixView u) const;
+  /// Φ.
+  ConstMatrixView tangent() const { return tangent_; }
   /// Entries of one point's state.
   std::size_t size() const { return beginning_.extent(1); }
 

@@ -23,9 +23,9 @@ Case chain(const std::string& folder) {
   Case values;
   values.folder = folder;
   values.jacobian = "diagonal";
-  values.tolerance = 1e-8;
+  values.tolerance = 1e-6;
   values.iterations = 40;
-  values.refresh = 3;
+  values.refresh = 10;
   values.basis_rank = 4;
   values.residual_rank = 6;
   values.samples = 15;
@@ -34,8 +34,9 @@ Case chain(const std::string& folder) {
   return values;
 }
 
-Case trained(const TestFolder& folder) {
+Case trained(const TestFolder& folder, const char* scheme = "backward euler") {
   Case values = chain(folder / ("rank" + std::to_string(test::world()->getRank())));
+  values.scheme = scheme;
   std::filesystem::create_directory(values.folder);
   const Teuchos::ParameterList input = test::input_of(values);
   RunReport report;
@@ -105,7 +106,7 @@ class Running {
 /// Eleven points: a group of eight lanes and a part of one.
 ParameterPoints eleven() {
   ParameterPoints points{{"power", "velocity"}, {}};
-  for (int point = 0; point < 11; ++point) points.values.push_back({34.0 + point, 5.0 + 0.05 * (point % 4)});
+  for (int point = 0; point < 11; ++point) points.values.push_back({30.0 + 4.0 * point, 5.0 + 0.1 * (point % 4)});
   return points;
 }
 
@@ -127,9 +128,8 @@ class Together : public testing::TestWithParam<Setting> {};
 
 TEST_P(Together, EachPointIsThatOfARunOfItsOwn) {
   const TestFolder folder;
-  Case values = trained(folder);
+  Case values = trained(folder, GetParam().scheme);
   values.method = GetParam().method;
-  values.scheme = GetParam().scheme;
   values.jacobian = GetParam().jacobian;
   const ParameterPoints points = eleven();
   Running running(values);
@@ -230,6 +230,7 @@ TEST(Together, RefusesByNameWhatItDoesNotOffer) {
   input = test::input_of(values);
   input.sublist("method").set("factors", std::string("every iteration"));
   expect_refusal(values, input, "method.factors");
+  values.method = "lspg";  // gnat insists on the scheme it was trained with
   values.scheme = "rk4";
   expect_refusal(values, test::input_of(values), "time.scheme");
 }
