@@ -26,6 +26,7 @@ Case chain(const std::string& folder) {
   values.tolerance = 1e-6;
   values.iterations = 40;
   values.refresh = 10;
+  values.reaction = 100.0;  // so that numbers of iterations differ from point to point
   values.basis_rank = 4;
   values.residual_rank = 6;
   values.samples = 15;
@@ -122,6 +123,7 @@ struct Setting {
   const char* method;
   const char* scheme;
   const char* jacobian;
+  double tolerance = 1e-12;
 };
 void PrintTo(const Setting& s, std::ostream* out) { *out << s.method << ", " << s.scheme << ", " << s.jacobian; }
 class Together : public testing::TestWithParam<Setting> {};
@@ -140,7 +142,7 @@ TEST_P(Together, EachPointIsThatOfARunOfItsOwn) {
     Running alone(values);
     LoopTotals totals;
     const History own = alone.alone(points, point, totals);
-    EXPECT_LT(relative_difference(together[point], own), 1e-12) << "point " << point;
+    EXPECT_LT(relative_difference(together[point], own), GetParam().tolerance) << "point " << point;
     EXPECT_EQ(outcomes[point].residuals, totals.residuals) << "point " << point;
     EXPECT_EQ(outcomes[point].iterations, totals.iterations) << "point " << point;
     EXPECT_EQ(outcomes[point].steps, values.steps);
@@ -159,7 +161,8 @@ TEST_P(Together, EachPointIsThatOfARunOfItsOwn) {
 INSTANTIATE_TEST_SUITE_P(
     Queries, Together,
     testing::Values(Setting{"gnat", "backward euler", "diagonal"}, Setting{"gnat", "bdf2", "diagonal"},
-                    Setting{"gnat", "trapezoidal", "matrix free"}, Setting{"gnat", "backward euler", "finite difference"},
+                    Setting{"gnat", "trapezoidal", "matrix free"}, // A difference quotient magnifies round-off by the inverse of its step, 1e8.
+                    Setting{"gnat", "backward euler", "finite difference", 1e-10},
                     Setting{"lspg", "backward euler", "diagonal"}, Setting{"galerkin", "bdf2", "sparse"},
                     Setting{"galerkin", "explicit euler", "diagonal"}));
 
