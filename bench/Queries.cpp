@@ -24,8 +24,8 @@ ParameterPoints points_around(const Parameters& parameters, std::size_t count) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> factor(0.9, 1.1);
   for (std::size_t point = 0; point < count; ++point) {
-    points.values.push_back({parameters.get(points.names[0]) * factor(generator),
-                             parameters.get(points.names[1]) * factor(generator)});
+    points.values.push_back(
+        {parameters.get(points.names[0]) * factor(generator), parameters.get(points.names[1]) * factor(generator)});
   }
   return points;
 }
@@ -122,7 +122,7 @@ std::vector<Figure> measure(Queries& queries, std::size_t a_run, int runs) {
   std::size_t run = 0;
   std::vector<double> alone;
   double difference = 0.0;
-  if (std::getenv("SKIP_ALONE") == nullptr) works.emplace_back([&] { alone = queries.alone(all.part(run * a_run, a_run)); });
+  works.emplace_back([&] { alone = queries.alone(all.part(run * a_run, a_run)); });
   for (const std::size_t width : widths) {
     works.emplace_back([&, width] {
       const std::vector<double> together = queries.together(all.part(run * a_run, a_run), width);

@@ -211,21 +211,27 @@ void answer_timed(const Stopwatch& total, const Input& input, const CommandOptio
 
   const std::size_t points = answers.points.count(), diverged = queries->diverged();
   RunReport report;
-  report.section("run") = {{"title", list.get<std::string>("title")},
-                           {"input", input.file()},
-                           {"method", type},
-                           {"status", diverged == 0 ? "complete" : fmt::format("{} of {} points diverged", diverged, points)},
-                           {"steps", answers.steps.back()},
-                           {"step_s", list.sublist("time").get<double>("step")}};
+  report.section("run") = {
+      {"title", list.get<std::string>("title")},
+      {"input", input.file()},
+      {"method", type},
+      {"status", diverged == 0 ? "complete" : fmt::format("{} of {} points diverged", diverged, points)},
+      {"steps", answers.steps.back()},
+      {"step_s", list.sublist("time").get<double>("step")}};
   report.section("provenance") = provenance(*communicator);
   queries->report(report);
   const Seconds all = elapsed(total, *communicator);
-  report.section("time") = {{"setup_wall_s", setup.wall}, {"setup_cpu_s", setup.cpu}, {"loop_wall_s", loop.wall},
-                            {"loop_cpu_s", loop.cpu},     {"total_wall_s", all.wall}, {"total_cpu_s", all.cpu},
+  report.section("time") = {{"setup_wall_s", setup.wall},
+                            {"setup_cpu_s", setup.cpu},
+                            {"loop_wall_s", loop.wall},
+                            {"loop_cpu_s", loop.cpu},
+                            {"total_wall_s", all.wall},
+                            {"total_cpu_s", all.cpu},
                             {"loop_wall_a_point_s", loop.wall / static_cast<double>(points)}};
   report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
   write_report(report, folder.path(), communicator, options.quiet);
-  if (diverged == points) throw DivergenceError("every point of the queries diverged", list.sublist("time").get<double>("end"));
+  if (diverged == points)
+    throw DivergenceError("every point of the queries diverged", list.sublist("time").get<double>("end"));
 }
 
 void run_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {

@@ -40,8 +40,8 @@ class AdvancesTogether {
  public:
   struct Request {
     ParameterPoints points;
-    const TimeScheme& scheme;         ///< of this method; how a step is taken
-    double step;                      ///< Δt in s
+    const TimeScheme& scheme;        ///< of this method; how a step is taken
+    double step;                     ///< Δt in s
     std::vector<LocalIndex> places;  ///< among the method's particles(): whose states are to be told
   };
   virtual ~AdvancesTogether() = default;

@@ -34,7 +34,8 @@ Problem unknown(const std::string& path, const std::string& name, const Paramete
 }
 
 std::string quantity_in(const std::string& unit) {
-  return unit == "1" ? "a number without a unit" : fmt::format("{} in {}", with_article(parse_unit(unit).dimension), unit);
+  return unit == "1" ? "a number without a unit"
+                     : fmt::format("{} in {}", with_article(parse_unit(unit).dimension), unit);
 }
 
 /// One value in SI units; adds what is wrong with it.
@@ -44,8 +45,8 @@ double value_in(const std::string& text, const Parameter& parameter, const std::
     const Quantity quantity = parse_quantity(text);
     const Dimension expected = parse_unit(parameter.unit).dimension;
     if (!quantity.has_unit || quantity.dimension == expected) return quantity.value;
-    problems.push_back({path, fmt::format("'{}' is {}", text, with_article(quantity.dimension)),
-                        quantity_in(parameter.unit), {}});
+    problems.push_back(
+        {path, fmt::format("'{}' is {}", text, with_article(quantity.dimension)), quantity_in(parameter.unit), {}});
   } catch (const InputError& error) {
     problems.push_back({path, error.problems().front().found, quantity_in(parameter.unit), {}});
   }
@@ -106,7 +107,8 @@ Axes listed(const Teuchos::ParameterList& list, const Parameters& parameters, bo
     for (const std::string& text : texts) values.push_back(value_in(text, *parameter, path, problems));
     if (texts.empty()) problems.push_back({path, "an empty list is given", "one value or more", {}});
     if (!grid && values.size() != axes.values.front().size()) {
-      problems.push_back({path, fmt::format("lists {} values", values.size()),
+      problems.push_back({path,
+                          fmt::format("lists {} values", values.size()),
                           fmt::format("{} of them, as {} has; or grid: true for all combinations",
                                       axes.values.front().size(), axes.names.front()),
                           {}});
@@ -165,7 +167,8 @@ Axes tabulated(const std::string& file, const Parameters& parameters) {
       try {
         values.push_back(parse_quantity(text).value);
       } catch (const InputError& error) {
-        throw FileError(file, fmt::format("point {}, {}", row, name), error.problems().front().found, "a finite number");
+        throw FileError(file, fmt::format("point {}, {}", row, name), error.problems().front().found,
+                        "a finite number");
       }
     }
   }
@@ -180,7 +183,8 @@ Specification query_specification() {
                "values of the model's live parameters, by name: a value for each point, e.g. {heat_source.power: "
                "[36 W, 40 W]}")
       .optional();
-  s.file("file", "a table of points instead (CSV): a column a parameter, its name and perhaps [unit] on top").optional();
+  s.file("file", "a table of points instead (CSV): a column a parameter, its name and perhaps [unit] on top")
+      .optional();
   s.flag("grid", "all combinations of the values listed, the last parameter fastest; for `points`").defaults_to(false);
   s.integer("together", "points that advance together where the method offers it; 1: each has a run of its own")
       .at_least(1)
@@ -188,8 +192,10 @@ Specification query_specification() {
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     const bool points = list.isSublist("points"), file = list.isParameter("file");
     if (points == file) {
-      problems.push_back({"", points ? "both points and file are given" : "neither points nor file is given",
-                          "one of points and file", {}});
+      problems.push_back({"",
+                          points ? "both points and file are given" : "neither points nor file is given",
+                          "one of points and file",
+                          {}});
     }
     if (file && list.get<bool>("grid")) {
       problems.push_back({"grid", "goes with points, not with a file", "grid: false", {}});

@@ -35,7 +35,8 @@ std::vector<std::string> gathered(const std::string& text, const Communicator& c
   padded.resize(widest);
   Teuchos::gatherAll(communicator, widest, padded.data(), widest * ranks, all.data());
   std::vector<std::string> texts;
-  for (int rank = 0; rank < ranks; ++rank) texts.push_back(all.substr(static_cast<std::size_t>(widest) * rank, lengths[rank]));
+  for (int rank = 0; rank < ranks; ++rank)
+    texts.push_back(all.substr(static_cast<std::size_t>(widest) * rank, lengths[rank]));
   return texts;
 }
 

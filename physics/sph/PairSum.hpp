@@ -107,8 +107,8 @@ inline Lanes pair_sum_of_points(const StateLanes* states, const StateLanes& i, c
 /// f_i of Eq. 11 in K/s from Σ_j of PairQuantity::flux. With V_j = m_j/ρ_j and 4 k_i k_j/(k_i + k_j) = 4/(1/k_i +
 /// 1/k_j) it is the power that reaches the particle, 4 V_i Σ_j (…) + q_i A_i, over its heat capacity m_i c_i.
 template <class Scalar>
-KOKKOS_INLINE_FUNCTION Scalar heat_rate(const Scalar& volume, const Scalar& specific_heat, const Scalar& sum, double mass,
-                                        const Scalar& absorbed_power) {
+KOKKOS_INLINE_FUNCTION Scalar heat_rate(const Scalar& volume, const Scalar& specific_heat, const Scalar& sum,
+                                        double mass, const Scalar& absorbed_power) {
   return (4.0 * volume * sum + absorbed_power) / (mass * specific_heat);
 }
 template <class Scalar>

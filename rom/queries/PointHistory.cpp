@@ -21,8 +21,7 @@ PointHistory::PointHistory(const LinearMultistep& scheme, double step, std::size
 }
 
 void PointHistory::allocate_rows(std::size_t rows) {
-  const bool keep_rates =
-      scheme_.coefficients().uses_earlier_rates() || scheme_.starter().uses_earlier_rates();
+  const bool keep_rates = scheme_.coefficients().uses_earlier_rates() || scheme_.starter().uses_earlier_rates();
   for (Level& level : levels_) {
     level.u = MatrixView("kiln::rom::earlier states of points", points_, rows);
     level.f = keep_rates || &level == &levels_[0] ? MatrixView("kiln::rom::earlier rates of points", points_, rows)

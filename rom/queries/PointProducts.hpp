@@ -18,8 +18,9 @@ inline double at_once(const double* values) { return *values; }
 inline void store_at_once(double* values, double value) { *values = value; }
 #endif
 
-/// y_p = b_p + A x_p of every point p, for one matrix A. x: points × columns of A; b, y: points × rows, with the points'
-/// values next to each other. BLAS packs its operands anew in each call, which costs more than so narrow a product.
+/// y_p = b_p + A x_p of every point p, for one matrix A. x: points × columns of A; b, y: points × rows, with the
+/// points' values next to each other. BLAS packs its operands anew in each call, which costs more than so narrow a
+/// product.
 class PointProduct {
  public:
   explicit PointProduct(ConstMatrixView matrix) : matrix_(matrix) {}
@@ -63,7 +64,10 @@ class PointProduct {
 class PointMatrices {
  public:
   PointMatrices(std::size_t points, std::size_t rows, std::size_t columns)
-      : points_(points), rows_(rows), columns_(columns), entries_("kiln::rom::matrices of points", points, rows * columns) {}
+      : points_(points),
+        rows_(rows),
+        columns_(columns),
+        entries_("kiln::rom::matrices of points", points, rows * columns) {}
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; }

@@ -14,12 +14,12 @@ namespace kiln {
 
 /// The equations of a Projection for several parameter points at once. Each point has a frozen Jacobian, a test basis
 /// and factors of its own and counts its own iterations; states, rates and residuals of all points are found in one
-/// go. A point that has converged keeps its coordinates and idles until the last one has: its lane costs nothing extra,
-/// as the lanes next to it are still needed.
+/// go. A point that has converged keeps its coordinates and idles until the last one has; its lane then finds the same
+/// state and rate again.
 class PointProjection {
  public:
   struct Point {
-    SolveReport solve = {};                           ///< of the last step
+    SolveReport solve = {};                          ///< of the last step
     std::optional<DivergenceError> divergence = {};  ///< set: the point is left behind
   };
 
@@ -63,11 +63,11 @@ class PointProjection {
   PointMatrices test_;                ///< Ψ of each point
   PointMatrices inverse_transposed_;  ///< (ΨᵀJ̃Φ)⁻ᵀ of each point
 
-  MatrixView state_;              ///< points by sources × components
-  MatrixView residual_;           ///< points by rows × components
-  MatrixView g_, step_;           ///< points × M
-  std::vector<double> norms_;     ///< ‖Ψᵀr‖₂ of each point
-  std::vector<char> iterates_;    ///< of each point: 1 until it has converged
+  MatrixView state_;            ///< points by sources × components
+  MatrixView residual_;         ///< points by rows × components
+  MatrixView g_, step_;         ///< points × M
+  std::vector<double> norms_;   ///< ‖Ψᵀr‖₂ of each point
+  std::vector<char> iterates_;  ///< of each point: 1 until it has converged
 
   // Of one point.
   VectorView point_state_;

@@ -1,7 +1,7 @@
 #include "rom/queries/ReducedBlock.hpp"
 
-#include <Tpetra_Map.hpp>
 #include <fmt/format.h>
+#include <Tpetra_Map.hpp>
 #include <stdexcept>
 #include <utility>
 

@@ -161,7 +161,9 @@ TEST_P(Together, EachPointIsThatOfARunOfItsOwn) {
 INSTANTIATE_TEST_SUITE_P(
     Queries, Together,
     testing::Values(Setting{"gnat", "backward euler", "diagonal"}, Setting{"gnat", "bdf2", "diagonal"},
-                    Setting{"gnat", "trapezoidal", "matrix free"}, // A difference quotient magnifies round-off by the inverse of its step, 1e8.
+                    Setting{
+                        "gnat", "trapezoidal",
+                        "matrix free"},  // A difference quotient magnifies round-off by the inverse of its step, 1e8.
                     Setting{"gnat", "backward euler", "finite difference", 1e-10},
                     Setting{"lspg", "backward euler", "diagonal"}, Setting{"galerkin", "bdf2", "sparse"},
                     Setting{"galerkin", "explicit euler", "diagonal"}));
@@ -213,8 +215,8 @@ TEST(Together, LeavesADivergedPointBehind) {
 
 void expect_refusal(const Case& values, const Teuchos::ParameterList& input, const std::string& path) {
   const auto method = Registry<Method>::create(input.sublist("method"), Method::Context{input, self()});
-  const auto scheme = Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"),
-                                                   TimeScheme::Context{*method, values.step});
+  const auto scheme =
+      Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"), TimeScheme::Context{*method, values.step});
   try {
     dynamic_cast<AdvancesTogether&>(*method).point_block({eleven(), *scheme, values.step, places});
     ADD_FAILURE() << path << " was not refused";

@@ -75,7 +75,8 @@ TEST_F(QueryPoints, AreTheRowsOfATable) {
 }
 
 TEST_F(QueryPoints, TellAllMistakesOfListsAtOnce) {
-  points({{"beam.power", {"36 W", "40 m", "nan"}}, {"beam.powr", {"1"}}, {"share", {"1", "2"}}, {"beam.velocity.x", {}}});
+  points(
+      {{"beam.power", {"36 W", "40 m", "nan"}}, {"beam.powr", {"1"}}, {"share", {"1", "2"}}, {"beam.velocity.x", {}}});
   const std::vector<Problem> found = problems();
   ASSERT_EQ(found.size(), 6u);
   EXPECT_EQ(found[0].found, "'40 m' is a length");
