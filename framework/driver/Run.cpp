@@ -22,6 +22,7 @@
 #include "framework/method/Trainer.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/plugin/Plugins.hpp"
+#include "framework/queries/QueryRun.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
@@ -207,7 +208,49 @@ std::unique_ptr<Trainer> make_trainer(const Input& input, bool quiet, const Comm
   return Registry<Trainer>::create(list.sublist("reduction"), {list, communicator, quiet});
 }
 
+/// Answers the points of the block `queries`.
+void answer_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {
+  const Timers timers("kiln");
+  const Teuchos::ParameterList& list = input.list();
+  if (options.restart) {
+    throw InputError("queries", "a run that answers queries leaves no checkpoint", "kiln run without --restart");
+  }
+  const RunFolder folder(run_folder(list), *communicator);
+  const auto queries = located(input, [&] { return std::make_unique<QueryRun>(list, communicator); });
+  const Seconds setup = elapsed(total, *communicator);
+  const Stopwatch stepping;
+  const std::string type = list.sublist("method").get<std::string>("type");
+  const QueryAnswers& answers = located(input, [&]() -> const QueryAnswers& { return queries->answer(); });
+  const Seconds loop = elapsed(stepping, *communicator);
+  write_answers(answers, folder.path(), {{"input", input.merged()}, {"method", type}}, communicator);
+
+  const std::size_t points = answers.points.count(), diverged = queries->diverged();
+  RunReport report;
+  report.section("run") = {
+      {"title", list.get<std::string>("title")},
+      {"input", input.file()},
+      {"method", type},
+      {"status", diverged == 0 ? "complete" : fmt::format("{} of {} points diverged", diverged, points)},
+      {"steps", answers.steps.back()},
+      {"step_s", list.sublist("time").get<double>("step")}};
+  report.section("provenance") = provenance(*communicator);
+  queries->report(report);
+  const Seconds all = elapsed(total, *communicator);
+  report.section("time") = {{"setup_wall_s", setup.wall},
+                            {"setup_cpu_s", setup.cpu},
+                            {"loop_wall_s", loop.wall},
+                            {"loop_cpu_s", loop.cpu},
+                            {"total_wall_s", all.wall},
+                            {"total_cpu_s", all.cpu},
+                            {"loop_wall_a_point_s", loop.wall / static_cast<double>(points)}};
+  report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
+  write_report(report, folder.path(), communicator, options.quiet);
+  if (diverged == points)
+    throw DivergenceError("every point of the queries diverged", list.sublist("time").get<double>("end"));
+}
+
 void run_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {
+  if (input.list().isSublist("queries")) return answer_timed(total, input, options, communicator);
   const Timers timers("kiln");
   const Teuchos::ParameterList& list = input.list();
   const RunFolder folder(run_folder(list), *communicator);
@@ -301,7 +344,12 @@ void build(const Input& input, bool trains, const Comm& communicator) {
   const TemporaryFolder folder(*communicator);
   located(input, [&] {
     if (trains) make_trainer(input, true, communicator);
-    return std::make_unique<Assembly>(input, folder.path(), communicator, false);
+    if (input.list().isSublist("queries")) {
+      QueryRun(input.list(), communicator);
+    } else {
+      Assembly(input, folder.path(), communicator, false);
+    }
+    return 0;
   });
 }
 

@@ -3,6 +3,7 @@
 #include "framework/method/Method.hpp"
 #include "framework/method/Trainer.hpp"
 #include "framework/observers/Observer.hpp"
+#include "framework/queries/QueryPoints.hpp"
 #include "framework/time/NewtonSettings.hpp"
 #include "framework/time/TimeScheme.hpp"
 
@@ -55,6 +56,11 @@ Specification run_specification() {
   specification.section("time", "time span, scheme and solver", time_specification());
   specification.component<Method>("method", "full order, or which reduction of it").defaults_to("fom");
   specification.component<Trainer>("reduction", "how `kiln train` learns the reduction").optional();
+  specification
+      .section("queries",
+               "points of the model's live parameters, all answered in one run: histories of the probes for each",
+               query_specification())
+      .optional();
   specification.section("output", "what is written and where", output_specification());
   return specification;
 }

@@ -3,6 +3,7 @@
 #include <Teuchos_TypeNameTraits.hpp>
 
 #include "framework/base/Error.hpp"
+#include "framework/model/PointRates.hpp"
 
 namespace kiln {
 
@@ -24,6 +25,10 @@ Teuchos::RCP<const CrsMatrix> Model::rate_jacobian_matrix(ConstVectorView, doubl
 
 std::unique_ptr<Model> Model::sampled(const std::vector<GlobalIndex>&) const {
   throw NotOffered(class_name(), "sampled");
+}
+
+std::unique_ptr<PointRates> Model::at_points(const ParameterPoints& points) {
+  return one_after_the_other(*this, points);
 }
 
 void Model::save_sample(hdf5::Group&) const { throw NotOffered(class_name(), "save_sample"); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
+#include "framework/model/ParameterPoints.hpp"
 #include "framework/model/Parameters.hpp"
 
 namespace kiln {
@@ -13,6 +14,8 @@ namespace kiln {
 namespace hdf5 {
 class Group;
 }
+
+class PointRates;
 
 /// One component of a particle's state, e.g. {"temperature", "K"}.
 struct Field {
@@ -71,6 +74,10 @@ class Model {
   virtual std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const;
   /// Writes what a sampled model needs to be rebuilt without the full one, for any number of ranks. Collective.
   virtual void save_sample(hdf5::Group& group) const;
+
+  /// This model at several points of its live parameters at once. The result uses the model and must not outlive it.
+  /// Unless a model has something faster, the points are evaluated one after the other.
+  virtual std::unique_ptr<PointRates> at_points(const ParameterPoints& points);
 
   /// What the run report should say of the model, e.g. {"pairs", 7871920}, over all ranks. A model that has nothing to
   /// add to what its method reports anyway keeps the empty list. Collective.

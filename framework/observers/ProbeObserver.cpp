@@ -50,7 +50,7 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
       file_(context.folder / "probes.csv"),
       communicator_(context.communicator),
       every_(list.get<int>("every")),
-      probes_(find_probes(list, context)),
+      probes_(find_probes(list, context.method)),
       fields_(method_.fields()),
       local_(probes_.size() * fields_.size()),
       values_(probes_.size() * fields_.size()) {
@@ -68,36 +68,6 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
 void ProbeObserver::begin() {
   log_ = std::make_unique<CsvLog>(file_, columns(), context_.first_step, communicator_);
   write_places();
-}
-
-std::vector<ProbeObserver::Probe> ProbeObserver::find_probes(const Teuchos::ParameterList& list,
-                                                             const Context& context) {
-  const Teuchos::RCP<const Map> map = context.method.particles();
-  const ConstPositionView positions = context.method.positions();
-  const auto box = bounding_box(positions, *map->getComm());
-  const Teuchos::ParameterList& points = list.sublist("points");
-  std::vector<Probe> probes;
-  std::vector<Problem> problems;
-  for (int i = 0; points.isSublist(std::to_string(i)); ++i) {
-    const Teuchos::ParameterList& entry = points.sublist(std::to_string(i));
-    const auto& position = entry.get<Teuchos::Array<double>>("position");
-    Probe probe{entry.get<std::string>("name"), {position[0], position[1], position[2]}, {}};
-    probe.particle = nearest_particle(*map, positions, probe.point);
-    const double tolerance = list.isParameter("tolerance") ? list.get<double>("tolerance") : probe.particle.spacing;
-    if (probe.particle.id < 0 || !(probe.particle.distance <= tolerance)) {
-      problems.push_back(
-          {fmt::format("{}.points.{}.position", list.name(), i),
-           fmt::format("probe '{}' at ({:.6g}, {:.6g}, {:.6g}) m is outside: the nearest particle is {:.4g} m away",
-                       probe.name, probe.point[0], probe.point[1], probe.point[2], probe.particle.distance),
-           fmt::format("a point at most {:.4g} m from a particle; these lie in [{:.6g}, {:.6g}] × [{:.6g}, {:.6g}] × "
-                       "[{:.6g}, {:.6g}] m",
-                       tolerance, box[0][0], box[1][0], box[0][1], box[1][1], box[0][2], box[1][2]),
-           ""});
-    }
-    probes.push_back(std::move(probe));
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-  return probes;
 }
 
 std::vector<std::string> ProbeObserver::columns() const {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/files/CsvLog.hpp"
-#include "framework/observers/NearestParticle.hpp"
 #include "framework/observers/Observer.hpp"
+#include "framework/observers/Probes.hpp"
 #include "framework/registry/Specification.hpp"
 
 namespace kiln {
@@ -28,12 +28,6 @@ class ProbeObserver : public Observer {
   void finish(RunReport& report) override;
 
  private:
-  struct Probe {
-    std::string name;
-    std::array<double, 3> point;  ///< in m, as asked for
-    NearestParticle particle;
-  };
-  static std::vector<Probe> find_probes(const Teuchos::ParameterList& list, const Context& context);
   void write_places() const;
   std::vector<std::string> columns() const;
   void add_row(const Moment& moment);

@@ -28,7 +28,7 @@ MultistepCoefficients starter_of(const MultistepCoefficients& scheme) {
   return scheme.order() <= 2 ? MultistepCoefficients::backward_euler() : MultistepCoefficients::trapezoidal();
 }
 
-bool starts_by_runge_kutta(const MultistepCoefficients& scheme) {
+bool needs_runge_kutta_starter(const MultistepCoefficients& scheme) {
   return scheme.steps() > 1 && scheme.order() > (scheme.is_explicit() ? 2 : 3);
 }
 
@@ -88,7 +88,7 @@ LinearMultistep::LinearMultistep(MultistepCoefficients coefficients, const Conte
   for (Problem& problem : problems) problem.path = path.empty() ? problem.path : path + "." + problem.path;
   if (!problems.empty()) throw InputError(std::move(problems));
   starter_ = starter_of(coefficients_);
-  if (starts_by_runge_kutta(coefficients_)) {
+  if (needs_runge_kutta_starter(coefficients_)) {
     runge_kutta_starter_ = std::make_unique<RungeKuttaStep>(rk4_tableau(), method_, step_);
   }
 

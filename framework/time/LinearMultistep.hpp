@@ -26,6 +26,9 @@ class LinearMultistep : public TimeScheme {
   void restore(const hdf5::Group& group) override;
 
   const MultistepCoefficients& coefficients() const { return coefficients_; }
+  /// The scheme of the first steps, unless starts_by_runge_kutta().
+  const MultistepCoefficients& starter() const { return starter_; }
+  bool starts_by_runge_kutta() const { return runge_kutta_starter_ != nullptr; }
 
  private:
   /// What is kept of one time level.

@@ -45,6 +45,10 @@ class HeatModel final : public Model {
   std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const override;
   void save_sample(hdf5::Group& group) const override;
 
+  /// Points go through the particles and their pairs as the lanes of vectors: neighbours and weights are read once for
+  /// eight points.
+  std::unique_ptr<PointRates> at_points(const ParameterPoints& points) override;
+
   /// `pairs`: directed pairs of neighbours, and `neighbours_per_particle`.
   std::vector<std::pair<std::string, double>> facts() const override;
 
@@ -78,6 +82,7 @@ class HeatModel final : public Model {
     double specific_heat;
   };
 
+  class AtPoints;
   struct JacobianRow;
   struct JacobianRows;
   /// Columns of a multivector that go through the pairs together.

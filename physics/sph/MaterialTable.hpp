@@ -52,6 +52,19 @@ class MaterialTable {
             values_(i, 2) + fraction * (values_(i + 1, 2) - values_(i, 2))};
   }
 
+  /// The interval of the table that at(u) interpolates in, and how far into it u lies: 0 and 1 where at(u) takes an end
+  /// of the table. Without a branch, for vectors.
+  KOKKOS_FORCEINLINE_FUNCTION int interval(double u, double& fraction) const {
+    double place = (u - from_) * inverse_step_;
+    // Not a number ends at the table's end, as in at().
+    place = place < intervals_ ? place : intervals_;
+    place = place > 0.0 ? place : 0.0;
+    const int i = static_cast<int>(place);
+    const int inside = i < intervals_ ? i : intervals_ - 1;
+    fraction = place - inside;
+    return inside;
+  }
+
   /// d/du of the properties, per K: those of the interval u lies in, 0 outside the table.
   KOKKOS_INLINE_FUNCTION MaterialPoint<double> slopes(double u) const {
     const double place = (u - from_) * inverse_step_;

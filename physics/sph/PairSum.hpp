@@ -85,14 +85,36 @@ inline double pair_sum_by_lanes(const ThermalState<double>* states, const Therma
   if (pair < count) sum += term(pair).value();
   return lane_sum(sum);
 }
+
+/// Σ_j of PairQuantity::flux over a row's pairs in eight states at once, the lanes. Four pairs share one divide.
+inline Lanes pair_sum_of_points(const StateLanes* states, const StateLanes& i, const LocalIndex* sources,
+                                const double* weights, LocalIndex count) {
+  const auto term = [&](LocalIndex pair) {
+    const StateLanes& j = states[sources[pair]];
+    return pair_term<PairQuantity::flux>(i.temperature, i.resistivity, j.temperature, j.resistivity, j.volume)
+        .weighted(weights[pair]);
+  };
+  Lanes sum = {};
+  LocalIndex pair = 0;
+  for (; pair + 4 <= count; pair += 4) {
+    sum += ((term(pair) + term(pair + 1)) + (term(pair + 2) + term(pair + 3))).value();
+  }
+  for (; pair < count; ++pair) sum += term(pair).value();
+  return sum;
+}
 #endif
 
 /// f_i of Eq. 11 in K/s from Σ_j of PairQuantity::flux. With V_j = m_j/ρ_j and 4 k_i k_j/(k_i + k_j) = 4/(1/k_i +
 /// 1/k_j) it is the power that reaches the particle, 4 V_i Σ_j (…) + q_i A_i, over its heat capacity m_i c_i.
 template <class Scalar>
+KOKKOS_INLINE_FUNCTION Scalar heat_rate(const Scalar& volume, const Scalar& specific_heat, const Scalar& sum,
+                                        double mass, const Scalar& absorbed_power) {
+  return (4.0 * volume * sum + absorbed_power) / (mass * specific_heat);
+}
+template <class Scalar>
 KOKKOS_INLINE_FUNCTION Scalar heat_rate(const ThermalState<Scalar>& i, const Scalar& sum, double mass,
                                         double absorbed_power) {
-  return (4.0 * i.volume * sum + absorbed_power) / (mass * i.specific_heat);
+  return heat_rate(i.volume, i.specific_heat, sum, mass, Scalar(absorbed_power));
 }
 
 }  // namespace kiln

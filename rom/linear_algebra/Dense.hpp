@@ -71,6 +71,8 @@ class LuFactors {
   double factor(const MatrixView& a);
   /// b = A⁻¹ b. Does not allocate.
   void solve(const VectorView& b) const;
+  /// A⁻ᵀ. Does not allocate.
+  void inverse_transposed(const MatrixView& result) const;
 
  private:
   MatrixView factors_;

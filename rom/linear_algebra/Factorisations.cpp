@@ -139,4 +139,13 @@ void LuFactors::solve(const VectorView& b) const {
                  pivots_.data(), b.data(), static_cast<int>(factors_.extent(0)), &info);
 }
 
+void LuFactors::inverse_transposed(const MatrixView& result) const {
+  const int n = static_cast<int>(factors_.extent(0));
+  Kokkos::deep_copy(result, 0.0);
+  for (int k = 0; k < n; ++k) result(k, k) = 1.0;
+  int info = 0;
+  Lapack().GETRS('T', n, n, factors_.data(), leading_dimension(factors_), pivots_.data(), result.data(),
+                 leading_dimension(result), &info);
+}
+
 }  // namespace kiln::dense

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/method/Method.hpp"
+#include "framework/queries/PointBlock.hpp"
 #include "rom/projection/Projection.hpp"
 
 namespace kiln {
@@ -12,7 +13,7 @@ namespace kiln {
 /// coordinates of all windows; those of windows to come are zero, those of windows past stay as they were, and the
 /// window that a step lies in solves for its own. Windows hand over exactly: a trial space begins at the state that the
 /// earlier coordinates tell.
-class PetrovGalerkin : public Method {
+class PetrovGalerkin : public Method, public AdvancesTogether {
  public:
   struct Window {
     double end;  ///< s; TimeWindow
@@ -52,6 +53,15 @@ class PetrovGalerkin : public Method {
   void restore(const hdf5::Group& group) override;
   void report(nlohmann::json& section) const override;
 
+  /// With linear multistep schemes.
+  std::unique_ptr<PointBlock> point_block(Request request) override;
+  std::size_t window_count() const { return windows_.size(); }
+  /// The window that a step which ends at `time` lies in.
+  std::size_t window_at(double time) const;
+  Projection& projection(std::size_t window) const { return *windows_[window].projection; }
+  /// The trial space of a window on particles().
+  const TrialSpace& held(std::size_t window) const { return *windows_[window].held; }
+
   /// Projection::observe_residuals of every window.
   void observe_residuals(const std::function<void(ConstVectorView)>& observer);
 
@@ -62,7 +72,6 @@ class PetrovGalerkin : public Method {
     std::unique_ptr<TrialSpace> held;
   };
   Projection& projection() const { return *windows_[current_].projection; }
-  std::size_t window_at(double time) const;
 
   std::vector<OwnedWindow> windows_;
   std::size_t current_ = 0;

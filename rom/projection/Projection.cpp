@@ -11,9 +11,6 @@
 namespace kiln {
 namespace {
 
-/// A residual this many times the step's first one will not come back.
-constexpr double growth_limit = 1e6;
-
 // A label made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
 const std::string residual_label = "kiln::rom::residual";
 
@@ -100,10 +97,12 @@ void Projection::factor(double time) {
   dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test_, jacobian_tangent_, 0.0, small_);
   dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
   reciprocal_condition_ = factors_.factor(small_);
-  if (!(reciprocal_condition_ > 1e-15)) {
-    throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows",
-                          time);
-  }
+  require_regular(reciprocal_condition_, time);
+}
+
+void Projection::require_regular(double reciprocal_condition, double time) {
+  if (reciprocal_condition > 1e-15) return;
+  throw DivergenceError("the reduced Jacobian is singular to round-off: basis vectors are dependent at the rows", time);
 }
 
 void Projection::linearise(double alpha, double gamma, ConstVectorView x, double time) {
@@ -160,7 +159,7 @@ double Projection::reduced_residual(const StepResidual& residual, ConstVectorVie
   if (observer_) observer_(residual_);
   project(residual_, g_);
   const double norm = norm_of(g_);
-  if (!std::isfinite(norm)) throw_diverged("the residual is not finite", residual.time, f, residual_);
+  if (!std::isfinite(norm)) throw_diverged(not_finite, residual.time, f, residual_);
   return norm;
 }
 
@@ -200,7 +199,7 @@ SolveReport Projection::solve(const StepResidual& residual, VectorView x, Vector
     ++report.residuals;
     norm = settings_.line_search ? search_line(residual, x, f, norm, next, report) : next;
     if (norm > growth_limit * report.first_norm) {
-      throw_diverged("the reduced residual has grown a million times in one step", residual.time, f, residual_);
+      throw_diverged(grown, residual.time, f, residual_);
     }
   }
   report.last_norm = norm;
@@ -218,7 +217,7 @@ SolveReport Projection::solve_explicit(const StepResidual& residual, VectorView 
   SolveReport report;
   report.first_norm = norm_of(g_);
   if (!std::isfinite(report.first_norm)) {
-    throw_diverged("the residual is not finite", residual.time, residual.history, residual_);
+    throw_diverged(not_finite, residual.time, residual.history, residual_);
   }
   copy(g_, step_);
   factors_.solve(step_);

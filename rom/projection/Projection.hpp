@@ -45,10 +45,18 @@ class Projection {
                      ///< result
   };
 
+  /// A residual this many times the step's first one will not come back.
+  static constexpr double growth_limit = 1e6;
+  static constexpr const char* not_finite = "the residual is not finite";
+  static constexpr const char* grown = "the reduced residual has grown a million times in one step";
+
   Projection(Parts parts, const NewtonSettings& settings, Factors factors = Factors::kept);
 
   Model& model() const { return *model_; }
   const TrialSpace& trial() const { return *trial_; }
+  TestBasis& test_basis() const { return *test_basis_; }
+  const NewtonSettings& settings() const { return settings_; }
+  Factors when_factored() const { return when_factored_; }
   LocalIndex row_size() const { return row_size_; }
   /// û whose state is nearest to the model's initial one at the rows; exactly 0 where that is the reference state.
   void initial(VectorView x) const;
@@ -59,6 +67,8 @@ class Projection {
   int rate(ConstVectorView x, double time, VectorView dxdt);
   SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f);
 
+  /// Throws DivergenceError for a reduced Jacobian of this reciprocal condition number that is singular to round-off.
+  static void require_regular(double reciprocal_condition, double time);
   /// The next step takes J̃Φ anew.
   void forget_jacobian() { frozen_.age = -1; }
   long long linearisations() const { return linearisations_; }

@@ -1,0 +1,14 @@
+#include "framework/model/ParameterPoints.hpp"
+
+namespace kiln {
+
+ParameterPoints ParameterPoints::part(std::size_t first, std::size_t count) const {
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+  return {names, {begin, begin + static_cast<std::ptrdiff_t>(count)}};
+}
+
+void ParameterPoints::set(std::size_t point, Parameters& parameters) const {
+  for (std::size_t k = 0; k < names.size(); ++k) parameters.set(names[k], values[point][k]);
+}
+
+}  // namespace kiln

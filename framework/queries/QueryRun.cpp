@@ -1,0 +1,216 @@
+#include "framework/queries/QueryRun.hpp"
+
+#include <fmt/format.h>
+
+#include <Teuchos_CommHelpers.hpp>
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "framework/base/Error.hpp"
+#include "framework/files/Together.hpp"
+#include "framework/observers/Probes.hpp"
+#include "framework/queries/QueryPoints.hpp"
+#include "framework/registry/Registry.hpp"
+
+namespace kiln {
+namespace {
+
+const Teuchos::ParameterList& probe_block(const Teuchos::ParameterList& input) {
+  const Teuchos::ParameterList& output = input.sublist("output");
+  if (!output.isSublist("probes")) {
+    throw InputError("output", "there are no probes, whose histories answer the queries", "a block output.probes");
+  }
+  return output.sublist("probes");
+}
+
+/// Texts of all ranks, one after the other, on each. Collective.
+std::vector<std::string> gathered(const std::string& text, const Communicator& communicator) {
+  const int ranks = communicator.getSize(), length = static_cast<int>(text.size());
+  std::vector<int> lengths(ranks);
+  Teuchos::gatherAll(communicator, 1, &length, ranks, lengths.data());
+  const int widest = std::max(1, *std::max_element(lengths.begin(), lengths.end()));
+  std::string padded = text, all(static_cast<std::size_t>(widest) * ranks, '\0');
+  padded.resize(widest);
+  Teuchos::gatherAll(communicator, widest, padded.data(), widest * ranks, all.data());
+  std::vector<std::string> texts;
+  for (int rank = 0; rank < ranks; ++rank)
+    texts.push_back(all.substr(static_cast<std::size_t>(widest) * rank, lengths[rank]));
+  return texts;
+}
+
+/// Keeps what a run of one point shows.
+class Recorder final : public Observer {
+ public:
+  using Keep = std::function<void(int step, ConstVectorView x)>;
+  Recorder(PointOutcome& outcome, Keep keep) : outcome_(outcome), keep_(std::move(keep)) {}
+  void begin() override {}
+  void observe(const Moment& moment) override {
+    outcome_.steps = moment.step;
+    outcome_.residuals += moment.solve.residuals;
+    outcome_.iterations += moment.solve.iterations;
+    outcome_.capped_steps += moment.solve.converged ? 0 : 1;
+    keep_(moment.step, moment.x);
+  }
+  void finish(RunReport&) override {}
+
+ private:
+  PointOutcome& outcome_;
+  Keep keep_;
+};
+
+}  // namespace
+
+QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Communicator> communicator)
+    : input_(input),
+      communicator_(std::move(communicator)),
+      own_(communicator_->split(communicator_->getRank(), 0)),
+      span_(TimeSpan::of(input)),
+      every_(probe_block(input).get<int>("every")) {
+  build_method();
+  const Teuchos::ParameterList& queries = input.sublist("queries");
+  answers_.points = query_points(queries, method_->parameters());
+  for (const std::string& name : answers_.points.names) {
+    const auto& list = method_->parameters().list();
+    const auto named = [&name](const Parameter& parameter) { return parameter.name == name; };
+    answers_.units.push_back(std::find_if(list.begin(), list.end(), named)->unit);
+  }
+  for (const Probe& probe : find_probes(probe_block(input), *method_)) {
+    answers_.probes.push_back(probe.name);
+    places_.push_back(probe.particle.local);
+  }
+  answers_.fields = method_->fields();
+  for (int step = 0; step <= span_.last_step; ++step) {
+    if (!is_recorded(step)) continue;
+    answers_.steps.push_back(step);
+    answers_.times.push_back(step * span_.step);
+  }
+
+  const std::size_t count = answers_.points.count(), wanted = queries.get<int>("together");
+  if (dynamic_cast<AdvancesTogether*>(method_.get()) != nullptr) together_ = std::min(wanted, count);
+  if (together_ > 1) block(0, 1);
+  const std::size_t blocks = (count + together_ - 1) / together_;
+  const std::size_t rank = communicator_->getRank(), ranks = communicator_->getSize();
+  answers_.first = std::min(count, blocks * rank / ranks * together_);
+  answers_.outcomes.resize(std::min(count, blocks * (rank + 1) / ranks * together_) - answers_.first);
+}
+
+void QueryRun::build_method() {
+  scheme_.reset();
+  method_.reset();
+  method_ = Registry<Method>::create(input_.sublist("method"), {input_, own_});
+  scheme_ = Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), {*method_, span_.step});
+}
+
+std::unique_ptr<PointBlock> QueryRun::block(std::size_t first, std::size_t count) {
+  return dynamic_cast<AdvancesTogether&>(*method_).point_block(
+      {answers_.points.part(first, count), *scheme_, span_.step, places_});
+}
+
+void QueryRun::answer_together(std::size_t first, std::size_t count) {
+  const std::unique_ptr<PointBlock> points = block(answers_.first + first, count);
+  const MatrixView told("kiln::queries::probes", count, answers_.width());
+  std::size_t recorded = 0;
+  const auto record = [&](int step) {
+    if (!is_recorded(step)) return;
+    points->tell(told);
+    for (std::size_t point = 0; point < count; ++point) {
+      if (!points->outcomes()[point].divergence.empty()) continue;
+      double* row = answers_.row(first + point, recorded);
+      for (std::size_t column = 0; column < answers_.width(); ++column) row[column] = told(point, column);
+    }
+    ++recorded;
+  };
+  points->start();
+  record(0);
+  for (int step = 1; step <= span_.last_step; ++step) {
+    points->advance(step, step * span_.step);
+    record(step);
+  }
+  std::copy(points->outcomes().begin(), points->outcomes().end(),
+            answers_.outcomes.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+void QueryRun::answer_alone(std::size_t point) {
+  // What a method has frozen in one run must not reach the next.
+  build_method();
+  answers_.points.set(answers_.first + point, method_->parameters());
+  const Method::Reader reader = method_->reader(places_);
+  const VectorView told("kiln::queries::probes", answers_.width());
+  const VectorView x("kiln::queries::unknown", local_size(*method_->coordinates()));
+  std::size_t recorded = 0;
+  PointOutcome& outcome = answers_.outcomes[point];
+  Recorder recorder(outcome, [&](int step, ConstVectorView unknown) {
+    if (!is_recorded(step)) return;
+    reader(unknown, told);
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), told);
+    std::copy_n(host.data(), host.extent(0), answers_.row(point, recorded++));
+  });
+  try {
+    method_->initial(x);
+    scheme_->start(x, 0.0);
+    run_time_loop(*method_, *scheme_, x, span_, {&recorder});
+  } catch (const DivergenceError& error) {
+    outcome.divergence = error.what();
+  }
+}
+
+const QueryAnswers& QueryRun::answer() {
+  const std::size_t count = answers_.outcomes.size();
+  answers_.histories.assign(count * answers_.steps.size() * answers_.width(), std::numeric_limits<double>::quiet_NaN());
+  answers_.outcomes.assign(count, {});
+  std::string refused;
+  try {
+    for (std::size_t first = 0; first < count; first += together_) {
+      if (together_ > 1) {
+        answer_together(first, std::min(together_, count - first));
+      } else {
+        answer_alone(first);
+      }
+    }
+  } catch (const std::exception& error) {
+    refused = error.what();
+  }
+  for (const std::string& text : gathered(refused, *communicator_)) {
+    if (!text.empty()) throw InputError("queries", text);
+  }
+  return answers_;
+}
+
+std::size_t QueryRun::diverged() const {
+  const auto is_marked = [](const PointOutcome& outcome) { return !outcome.divergence.empty(); };
+  const long long mine = std::count_if(answers_.outcomes.begin(), answers_.outcomes.end(), is_marked);
+  long long all = 0;
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 1, &mine, &all);
+  return static_cast<std::size_t>(all);
+}
+
+void QueryRun::report(RunReport& report) const {
+  nlohmann::json marked = nlohmann::json::array();
+  long long mine[4] = {}, all[4] = {};
+  for (std::size_t i = 0; i < answers_.outcomes.size(); ++i) {
+    const PointOutcome& outcome = answers_.outcomes[i];
+    if (!outcome.divergence.empty()) marked.push_back({{"point", answers_.first + i}, {"what", outcome.divergence}});
+    const long long counted[] = {outcome.steps, outcome.residuals, outcome.iterations, outcome.capped_steps};
+    for (int k = 0; k < 4; ++k) mine[k] += counted[k];
+  }
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 4, mine, all);
+  nlohmann::json divergences = nlohmann::json::array();
+  for (const std::string& text : gathered(marked.dump(), *communicator_)) {
+    for (const nlohmann::json& one : nlohmann::json::parse(text)) divergences.push_back(one);
+  }
+  report.section("queries") = {{"points", answers_.points.count()},
+                               {"together", together_},
+                               {"diverged", divergences.size()},
+                               {"divergences", divergences}};
+  const double steps = std::max(1.0, static_cast<double>(all[0]));
+  report.section("solve") = {{"steps", all[0]},
+                             {"residuals", all[1]},
+                             {"residuals_per_step", static_cast<double>(all[1]) / steps},
+                             {"iterations", all[2]},
+                             {"iterations_per_step", static_cast<double>(all[2]) / steps},
+                             {"capped_steps", all[3]}};
+}
+
+}  // namespace kiln

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <memory>
+#include <vector>
+
+#include "framework/driver/TimeLoop.hpp"
+#include "framework/queries/QueryAnswers.hpp"
+#include "framework/report/RunReport.hpp"
+
+namespace kiln {
+
+/// A run that answers many points of the model's live parameters (the block `queries`): histories of the input's
+/// probes for each.
+///
+/// Ranks share the points, not the particles: each rank has a method of its own and whole blocks of points, so that
+/// nothing is communicated while stepping, and no answer depends on the number of ranks, bit by bit. A method that
+/// offers it (AdvancesTogether) advances a block's points together; else each point has a run of its own.
+class QueryRun {
+ public:
+  /// Builds everything. Throws InputError and FileError for what does not fit. Collective.
+  QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Communicator> communicator);
+
+  /// Answers all points. A point that diverges is marked and stops no other. Throws InputError, on every rank, for a
+  /// point that the model refuses. Collective.
+  const QueryAnswers& answer();
+  /// Adds points, divergences and sums over all points. Collective.
+  void report(RunReport& report) const;
+  /// Points that advance together; 1: each has a run of its own.
+  std::size_t together() const { return together_; }
+  /// How many of all points diverged. Collective.
+  std::size_t diverged() const;
+
+ private:
+  void build_method();
+  std::unique_ptr<PointBlock> block(std::size_t first, std::size_t count);
+  void answer_together(std::size_t first, std::size_t count);
+  void answer_alone(std::size_t point);
+  bool is_recorded(int step) const { return step % every_ == 0 || step == span_.last_step; }
+
+  const Teuchos::ParameterList& input_;
+  Teuchos::RCP<const Communicator> communicator_, own_;
+  TimeSpan span_;
+  int every_;
+  std::unique_ptr<Method> method_;
+  std::unique_ptr<TimeScheme> scheme_;
+  std::vector<LocalIndex> places_;  ///< of the probes
+  std::size_t together_ = 1;
+  QueryAnswers answers_;
+};
+
+}  // namespace kiln

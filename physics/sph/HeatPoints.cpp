@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "framework/model/PointRates.hpp"
+#include "physics/sph/HeatModel.hpp"
+#include "physics/sph/PairRows.hpp"
+
+namespace kiln {
+
+#ifdef KILN_LANES
+namespace {
+
+/// A row of a material table: k, c, ρ and their differences to the next row, in one cache line.
+struct alignas(64) TableRow {
+  double values[lane_count / 2];
+  double differences[lane_count / 2];
+};
+using TableView = Kokkos::View<TableRow*, Device>;
+
+TableView rows_of(const MaterialTable& table) {
+  const std::vector<double> values = table.values();
+  const std::size_t intervals = values.size() / 3 - 1;
+  const TableView rows("rows of a material table", intervals);
+  const auto host = Kokkos::create_mirror_view(rows);
+  for (std::size_t i = 0; i < intervals; ++i) {
+    host(i) = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      host(i).values[k] = values[3 * i + k];
+      host(i).differences[k] = values[3 * i + 3 + k] - values[3 * i + k];
+    }
+  }
+  Kokkos::deep_copy(rows, host);
+  return rows;
+}
+
+/// MaterialTable::at for eight temperatures.
+inline MaterialPoint<Lanes> properties_at(const MaterialTable& table, const TableRow* rows, const Lanes& u) {
+  double fraction[lane_count];
+  int interval[lane_count];
+#pragma omp simd
+  for (int lane = 0; lane < lane_count; ++lane) interval[lane] = table.interval(u[lane], fraction[lane]);
+  HalfLanes records[lane_count];
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const TableRow& row = rows[interval[lane]];
+    HalfLanes values, differences;
+    __builtin_memcpy(&values, row.values, sizeof values);
+    __builtin_memcpy(&differences, row.differences, sizeof differences);
+    records[lane] = values + fraction[lane] * differences;
+  }
+  const FieldLanes fields = field_lanes(records);
+  return {fields.first, fields.second, fields.third};
+}
+
+}  // namespace
+
+/// Eight points are a vector; its lanes are the same particle in eight states. What a pair reads of its neighbour are
+/// whole vectors, so that nothing is gathered, and neighbours and weights serve eight points.
+class HeatModel::AtPoints final : public PointRates {
+ public:
+  AtPoints(HeatModel& model, const ParameterPoints& points)
+      : model_(model),
+        points_(points),
+        table_rows_(rows_of(model.table_)),
+        groups_((points.count() + lane_count - 1) / lane_count),
+        states_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "thermal states of points"),
+                groups_ * static_cast<std::size_t>(model.source_count())),
+        specific_heats_("specific heats of points", groups_ * static_cast<std::size_t>(model.row_count())),
+        fluxes_("heat flux of points", model.heated_.extent(0), points.count()),
+        absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())) {
+    if (points_.count() > 0) points_.set(0, model_.parameters_);
+  }
+
+  void rates(ConstMatrixView u, double time, MatrixView f) override {
+    if (u.extent(0) != points_.count() || f.extent(0) != points_.count()) {
+      throw std::invalid_argument("HeatModel: arrays of another number of points");
+    }
+    model_.check("rates", u.extent(1), f.extent(1));
+    if (!(time == absorbed_time_)) update_absorbed(time);
+    for (std::size_t group = 0; group < groups_; ++group) {
+      update_states(group, u);
+      sum_pairs(group, f);
+    }
+  }
+
+ private:
+  std::size_t width(std::size_t group) const {
+    return std::min<std::size_t>(lane_count, points_.count() - group * lane_count);
+  }
+
+  /// What a point absorbs does not depend on its state: one evaluation serves all iterations of a step.
+  void update_absorbed(double time) {
+    absorbed_time_ = time;
+    const auto heated = model_.heated_;
+    const auto number = static_cast<LocalIndex>(heated.extent(0));
+    if (number == 0) return;
+    for (std::size_t point = 0; point < points_.count(); ++point) {
+      points_.set(point, model_.parameters_);
+      model_.heat_source_->flux(time, model_.heated_positions_, Kokkos::subview(fluxes_, Kokkos::ALL, point));
+    }
+    const auto absorbed = absorbed_;
+    const auto fluxes = fluxes_;
+    const auto areas = model_.domain_.areas;
+    const std::size_t rows = model_.row_count(), points = points_.count();
+    Kokkos::parallel_for(
+        "kiln::sph::absorbed power of points", RangePolicy(0, number), KOKKOS_LAMBDA(LocalIndex h) {
+          const LocalIndex row = heated(h);
+          for (std::size_t point = 0; point < points; ++point) {
+            absorbed(point / lane_count * rows + row, point % lane_count) = fluxes(h, point) * areas(row);
+          }
+        });
+  }
+
+  void update_states(std::size_t group, const ConstMatrixView& u) {
+    const auto states = states_;
+    const auto specific_heats = specific_heats_;
+    const auto masses = model_.domain_.masses;
+    const MaterialTable table = model_.table_;
+    const TableView table_rows = table_rows_;
+    const std::size_t first_point = group * lane_count, points = width(group);
+    const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
+    Kokkos::parallel_for(
+        "kiln::sph::thermal states of points", RangePolicy(0, model_.source_count()), KOKKOS_LAMBDA(LocalIndex j) {
+          Lanes temperature = {};
+          if (points == lane_count) {
+            temperature = lanes_at(&u(first_point, j));
+          } else {
+            for (std::size_t lane = 0; lane < points; ++lane) temperature[lane] = u(first_point + lane, j);
+          }
+          const MaterialPoint<Lanes> point = properties_at(table, table_rows.data(), temperature);
+          // As thermal_state, with one divide for 1/k and m/ρ: half of the time goes into dividing.
+          const Lanes both = 1.0 / (point.conductivity * point.density);
+          states(first + j) = {temperature, both * point.density, masses(j) * both * point.conductivity};
+          if (static_cast<std::size_t>(j) < rows) {
+            store_lanes(&specific_heats(group * rows + j, 0), point.specific_heat);
+          }
+        });
+  }
+
+  void sum_pairs(std::size_t group, const MatrixView& f) {
+    const PairRows pairs(model_.domain_);
+    const auto states = states_;
+    const auto specific_heats = specific_heats_;
+    const auto absorbed = absorbed_;
+    const auto masses = model_.domain_.masses;
+    const std::size_t first_point = group * lane_count, points = width(group);
+    const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
+    Kokkos::parallel_for(
+        "kiln::sph::rates of points", RangePolicy(0, model_.row_count()), KOKKOS_LAMBDA(LocalIndex i) {
+          const StateLanes own = states(first + i);
+          const Lanes sum =
+              pair_sum_of_points(&states(first), own, pairs.sources_of(i), pairs.weights_of(i), pairs.count(i));
+          const Lanes rate = heat_rate(own.volume, lanes_at(&specific_heats(group * rows + i, 0)), sum, masses(i),
+                                       lanes_at(&absorbed(group * rows + i, 0)));
+          if (points == lane_count) {
+            store_lanes(&f(first_point, i), rate);
+          } else {
+            for (std::size_t lane = 0; lane < points; ++lane) f(first_point + lane, i) = rate[lane];
+          }
+        });
+  }
+
+  using LaneView = Kokkos::View<double* [lane_count], Kokkos::LayoutRight, Device>;
+
+  HeatModel& model_;
+  ParameterPoints points_;
+  TableView table_rows_;
+  std::size_t groups_;                        ///< of eight points each, the last one perhaps of fewer
+  Kokkos::View<StateLanes*, Device> states_;  ///< group by group: of the sources
+  LaneView specific_heats_;                   ///< group by group: of the rows
+  MatrixView fluxes_;                         ///< at the heated rows, of each point
+  LaneView absorbed_;                         ///< as specific_heats_, at absorbed_time_
+  double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+std::unique_ptr<PointRates> HeatModel::at_points(const ParameterPoints& points) {
+  return std::make_unique<AtPoints>(*this, points);
+}
+#else
+std::unique_ptr<PointRates> HeatModel::at_points(const ParameterPoints& points) {
+  return one_after_the_other(*this, points);
+}
+#endif
+
+}  // namespace kiln

@@ -1,0 +1,193 @@
+#include "rom/queries/PointProjection.hpp"
+
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "framework/base/Error.hpp"
+#include "framework/method/Divergence.hpp"
+
+namespace kiln {
+
+PointProjection::PointProjection(Projection& projection, const ParameterPoints& points)
+    : projection_(projection),
+      model_(projection.model()),
+      trial_(projection.trial()),
+      settings_(projection.settings()),
+      points_(points),
+      rates_(model_.at_points(points)),
+      states_(points.count(), trial_),
+      rows_(static_cast<std::size_t>(projection.row_size())),
+      size_(static_cast<std::size_t>(trial_.size())),
+      jacobian_(model_, settings_.jacobian),
+      test_(points.count(), rows_, size_),
+      inverse_transposed_(points.count(), size_, size_),
+      state_("kiln::rom::states of the sources of points", points.count(), states_.size()),
+      residual_("kiln::rom::residuals of points", points.count(), rows_),
+      g_("kiln::rom::reduced residuals of points", points.count(), size_),
+      step_("kiln::rom::updates of points", points.count(), size_),
+      norms_(points.count()),
+      iterates_(points.count()),
+      point_state_("kiln::rom::state of a point", states_.size()),
+      jacobian_tangent_("kiln::rom::J Phi of a point", rows_, size_),
+      small_("kiln::rom::reduced Jacobian of a point", size_, size_),
+      inverse_("kiln::rom::transposed inverse reduced Jacobian of a point", size_, size_) {}
+
+void PointProjection::evaluate(ConstMatrixView x, double time, MatrixView u, MatrixView f) {
+  states_.states(x, state_);
+  rates_->rates(state_, time, f);
+  std::copy_n(state_.data(), u.size(), u.data());
+}
+
+void PointProjection::linearise_point(std::size_t point, const StepResidual& residual) {
+  const double alpha = residual.alpha, gamma = residual.gamma;
+  const ConstMatrixView tangent = states_.tangent();
+  const ConstMatrixView tangent_rows = dense::row_block(tangent, 0, rows_);
+  if (gamma != 0.0) {
+    points_.set(point, model_.parameters());
+    take_point(state_, point, point_state_);
+    jacobian_.take(point_state_, residual.time);
+    jacobian_.apply(tangent, jacobian_tangent_);
+  }
+  for (std::size_t k = 0; k < size_; ++k) {
+    for (std::size_t i = 0; i < rows_; ++i) {
+      const double rate_part = gamma != 0.0 ? gamma * jacobian_tangent_(i, k) : 0.0;
+      jacobian_tangent_(i, k) = alpha * tangent_rows(i, k) - rate_part;
+    }
+  }
+  const ConstMatrixView test =
+      projection_.test_basis().form(tangent_rows, jacobian_tangent_, *model_.rows()->getComm());
+  dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test, jacobian_tangent_, 0.0, small_);
+  dense::LuFactors factors;
+  Projection::require_regular(factors.factor(small_), residual.time);
+  factors.inverse_transposed(inverse_);
+  test_.put(point, test);
+  inverse_transposed_.put(point, inverse_);
+}
+
+void PointProjection::linearise(const StepResidual& residual, MatrixView x, std::vector<Point>& points) {
+  if (residual.gamma != 0.0) states_.states(x, state_);
+  for (std::size_t point = 0; point < points.size(); ++point) {
+    if (points[point].divergence) continue;
+    try {
+      linearise_point(point, residual);
+    } catch (const DivergenceError& error) {
+      points[point].divergence = error;
+      put_point(VectorView("kiln::rom::zero", x.extent(1)), point, x);
+    }
+  }
+  frozen_alpha_ = residual.alpha;
+  frozen_gamma_ = residual.gamma;
+  age_ = 0;
+}
+
+void PointProjection::reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history,
+                                      ConstMatrixView f) {
+  const double alpha = residual.alpha;
+  // The rows come first among the sources.
+  const double* u = state_.data();
+  const double* rate = f.data();
+  const double* known = history.data();
+  double* r = residual_.data();
+  Kokkos::parallel_for(
+      "kiln::rom::residuals of points", Kokkos::RangePolicy<ExecutionSpace>(0, residual_.size()),
+      KOKKOS_LAMBDA(const std::size_t i) { r[i] = alpha * u[i] - gamma * rate[i] + known[i]; });
+  test_.multiply_transposed(residual_, g_);
+  for (std::size_t point = 0; point < norms_.size(); ++point) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < size_; ++k) sum += g_(point, k) * g_(point, k);
+    norms_[point] = std::sqrt(sum);
+  }
+}
+
+void PointProjection::update(MatrixView x) {
+  inverse_transposed_.multiply_transposed(g_, step_);
+  const MatrixView own = own_coordinates(x, trial_);
+  for (std::size_t k = 0; k < size_; ++k) {
+    for (std::size_t point = 0; point < iterates_.size(); ++point) {
+      if (iterates_[point] != 0) own(point, k) -= step_(point, k);
+    }
+  }
+}
+
+void PointProjection::leave_behind(std::size_t point, const char* what, double time, MatrixView x, ConstMatrixView f,
+                                   Point& outcome) {
+  const VectorView u("kiln::rom::state of a diverged point", rows_), rate("kiln::rom::its rate", rows_),
+      measure("kiln::rom::its residual", rows_);
+  take_point(state_, point, u);
+  take_point(f, point, rate);
+  take_point(residual_, point, measure);
+  outcome.divergence = divergence(model_, what, time, u, rate, measure);
+  iterates_[point] = 0;
+  // Its lane goes on with the reference state, which no model chokes on.
+  put_point(VectorView("kiln::rom::zero", x.extent(1)), point, x);
+}
+
+void PointProjection::watch(const StepResidual& residual, MatrixView x, ConstMatrixView f, std::vector<Point>& points) {
+  for (std::size_t point = 0; point < points.size(); ++point) {
+    if (iterates_[point] == 0) continue;
+    if (!std::isfinite(norms_[point])) {
+      leave_behind(point, Projection::not_finite, residual.time, x, f, points[point]);
+    } else if (norms_[point] > Projection::growth_limit * points[point].solve.first_norm) {
+      leave_behind(point, Projection::grown, residual.time, x, f, points[point]);
+    }
+  }
+}
+
+void PointProjection::iterate(const StepResidual& residual, ConstMatrixView history, MatrixView x, MatrixView f,
+                              std::vector<Point>& points) {
+  for (int iteration = 0;; ++iteration) {
+    bool any = false;
+    for (std::size_t point = 0; point < points.size(); ++point) {
+      if (iterates_[point] == 0) continue;
+      SolveReport& solve = points[point].solve;
+      solve.last_norm = norms_[point];
+      solve.converged = !(norms_[point] > settings_.tolerance * solve.first_norm);
+      if (solve.converged || iteration == settings_.iterations) {
+        iterates_[point] = 0;
+        continue;
+      }
+      ++solve.iterations;
+      ++solve.residuals;
+      any = true;
+    }
+    if (!any) return;
+    update(x);
+    states_.states(x, state_);
+    rates_->rates(state_, residual.time, f);
+    reduce_residual(residual, residual.gamma, history, f);
+    watch(residual, x, f, points);
+  }
+}
+
+void PointProjection::solve(const StepResidual& residual, ConstMatrixView history, MatrixView x, MatrixView u,
+                            MatrixView f, std::vector<Point>& points) {
+  const bool is_explicit = residual.gamma == 0.0;
+  const bool serves = age_ >= 0 && frozen_alpha_ == residual.alpha && frozen_gamma_ == residual.gamma;
+  if (!serves || (!is_explicit && age_ >= settings_.refresh)) linearise(residual, x, points);
+  ++age_;
+  states_.states(x, state_);
+  if (is_explicit) {
+    // The rate's factor is zero; any finite array may stand for it.
+    reduce_residual(residual, 0.0, history, history);
+  } else {
+    rates_->rates(state_, residual.time, f);
+    reduce_residual(residual, residual.gamma, history, f);
+  }
+  for (std::size_t point = 0; point < points.size(); ++point) {
+    points[point].solve = {};
+    iterates_[point] = points[point].divergence ? 0 : 1;
+    points[point].solve.first_norm = norms_[point];
+    points[point].solve.residuals = 1;
+  }
+  watch(residual, x, is_explicit ? history : ConstMatrixView(f), points);
+  if (is_explicit) {
+    update(x);
+    for (Point& point : points) point.solve.iterations = 1;
+    return evaluate(x, residual.time, u, f);
+  }
+  iterate(residual, history, x, f, points);
+  std::copy_n(state_.data(), u.size(), u.data());
+}
+
+}  // namespace kiln

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "framework/base/Error.hpp"
+#include "framework/model/PointRates.hpp"
+#include "framework/queries/PointBlock.hpp"
+#include "rom/projection/Projection.hpp"
+#include "rom/queries/PointProducts.hpp"
+#include "rom/queries/PointStates.hpp"
+
+namespace kiln {
+
+/// The equations of a Projection for several parameter points at once. Each point has a frozen Jacobian, a test basis
+/// and factors of its own and counts its own iterations; states, rates and residuals of all points are found in one
+/// go. A point that has converged keeps its coordinates and idles until the last one has; its lane then finds the same
+/// state and rate again.
+class PointProjection {
+ public:
+  struct Point {
+    SolveReport solve = {};                          ///< of the last step
+    std::optional<DivergenceError> divergence = {};  ///< set: the point is left behind
+  };
+
+  /// `projection` lends model, trial space and test basis; none of its own state is touched.
+  PointProjection(Projection& projection, const ParameterPoints& points);
+
+  std::size_t row_size() const { return rows_; }
+  /// Takes the states in which the window begins.
+  void begin(ConstMatrixView x) { states_.begin(x); }
+  /// As the functions of Projection, with an array's values of the points next to each other.
+  void evaluate(ConstMatrixView x, double time, MatrixView u, MatrixView f);
+  /// `residual.history` is empty; `history`: points by rows × components.
+  void solve(const StepResidual& residual, ConstMatrixView history, MatrixView x, MatrixView u, MatrixView f,
+             std::vector<Point>& points);
+
+ private:
+  void linearise(const StepResidual& residual, MatrixView x, std::vector<Point>& points);
+  void linearise_point(std::size_t point, const StepResidual& residual);
+  void iterate(const StepResidual& residual, ConstMatrixView history, MatrixView x, MatrixView f,
+               std::vector<Point>& points);
+  /// Fills g_ = Ψᵀr and norms_, from state_ and the rate times γ.
+  void reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history, ConstMatrixView f);
+  /// x ← x − (ΨᵀJ̃Φ)⁻¹ g_ of the points that iterate.
+  void update(MatrixView x);
+  /// Leaves points behind whose residual is not finite, and at least `growth` times as large as at first.
+  void watch(const StepResidual& residual, MatrixView x, ConstMatrixView f, std::vector<Point>& points);
+  void leave_behind(std::size_t point, const char* what, double time, MatrixView x, ConstMatrixView f, Point& outcome);
+
+  Projection& projection_;
+  Model& model_;
+  const TrialSpace& trial_;
+  NewtonSettings settings_;
+  ParameterPoints points_;
+  std::unique_ptr<PointRates> rates_;
+  PointStates states_;
+  std::size_t rows_, size_;
+  JacobianAction jacobian_;
+
+  double frozen_alpha_ = 0.0, frozen_gamma_ = 0.0;
+  int age_ = -1;                      ///< steps the Jacobians have served; −1: not taken yet
+  PointMatrices test_;                ///< Ψ of each point
+  PointMatrices inverse_transposed_;  ///< (ΨᵀJ̃Φ)⁻ᵀ of each point
+
+  MatrixView state_;            ///< points by sources × components
+  MatrixView residual_;         ///< points by rows × components
+  MatrixView g_, step_;         ///< points × M
+  std::vector<double> norms_;   ///< ‖Ψᵀr‖₂ of each point
+  std::vector<char> iterates_;  ///< of each point: 1 until it has converged
+
+  // Of one point.
+  VectorView point_state_;
+  MatrixView jacobian_tangent_, small_, inverse_;
+};
+
+}  // namespace kiln

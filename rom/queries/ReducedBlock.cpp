@@ -1,0 +1,101 @@
+#include "rom/queries/ReducedBlock.hpp"
+
+#include <fmt/format.h>
+#include <Tpetra_Map.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "framework/base/Error.hpp"
+
+namespace kiln {
+
+ReducedBlock::ReducedBlock(PetrovGalerkin& method, const LinearMultistep& scheme, AdvancesTogether::Request request)
+    : method_(method),
+      points_(std::move(request.points)),
+      places_(std::move(request.places)),
+      history_(scheme, request.step, points_.count(), local_size(*method.coordinates())),
+      x_("kiln::rom::coordinates of points", points_.count(), local_size(*method.coordinates())),
+      states_(points_.count()),
+      outcomes_(points_.count()) {}
+
+void ReducedBlock::enter(std::size_t window) {
+  window_ = window;
+  projection_ = std::make_unique<PointProjection>(method_.projection(window), points_);
+  told_space_ = method_.held(window).restricted(places_, static_cast<int>(method_.fields().size()));
+  told_ = std::make_unique<PointStates>(points_.count(), *told_space_);
+  told_->begin(x_);
+  history_.allocate_rows(projection_->row_size());
+  // Oldest first: the state in which the newest level ends is the one the window begins in.
+  history_.visit([this](PointHistory::Level& level) {
+    projection_->begin(level.x);
+    projection_->evaluate(level.x, level.time, level.u, level.f);
+  });
+}
+
+void ReducedBlock::start() {
+  history_.forget();
+  states_.assign(points_.count(), {});
+  outcomes_.assign(points_.count(), {});
+  const VectorView one("kiln::rom::coordinates of a point", x_.extent(1));
+  for (std::size_t point = 0; point < points_.count(); ++point) {
+    points_.set(point, method_.parameters());
+    method_.projection(0).initial(one);
+    put_point(one, point, x_);
+  }
+  enter(0);
+  PointHistory::Level& first = history_.next();
+  Kokkos::deep_copy(first.x, x_);
+  first.time = 0.0;
+  projection_->begin(first.x);
+  projection_->evaluate(first.x, first.time, first.u, first.f);
+  history_.accept();
+}
+
+void ReducedBlock::advance(int step, double time) {
+  if (projection_ == nullptr) throw std::logic_error("ReducedBlock::advance: not started");
+  const std::size_t window = method_.window_at(time);
+  if (window != window_) enter(window);
+  const ConstMatrixView history = history_.gather();
+  PointHistory::Level& next = history_.next();
+  projection_->solve({history_.scheme().alpha[0], history_.gamma(), time, {}}, history, x_, next.u, next.f, states_);
+  Kokkos::deep_copy(next.x, x_);
+  next.time = time;
+  history_.accept();
+  for (std::size_t point = 0; point < states_.size(); ++point) {
+    PointOutcome& outcome = outcomes_[point];
+    if (!outcome.divergence.empty()) continue;
+    if (states_[point].divergence) {
+      outcome.divergence = states_[point].divergence->at_step(step).what();
+      continue;
+    }
+    const SolveReport& solve = states_[point].solve;
+    ++outcome.steps;
+    outcome.residuals += solve.residuals;
+    outcome.iterations += solve.iterations;
+    outcome.capped_steps += solve.converged ? 0 : 1;
+  }
+}
+
+std::unique_ptr<PointBlock> PetrovGalerkin::point_block(Request request) {
+  const auto refuse = [](const char* path, const std::string& found, const char* expected) {
+    throw InputError(path, found + " is not offered to points that advance together",
+                     fmt::format("{}, or queries.together: 1, which runs one point after the other", expected));
+  };
+  const auto* scheme = dynamic_cast<const LinearMultistep*>(&request.scheme);
+  if (scheme == nullptr || scheme->starts_by_runge_kutta()) {
+    refuse("time.scheme", scheme == nullptr ? "a Runge-Kutta scheme" : "a scheme that starts by Runge-Kutta steps",
+           "a linear multistep scheme of order up to 3 (explicit: 2)");
+  }
+  if (settings_.line_search) refuse("time.newton.line_search", "a line search", "line_search: false");
+  for (const OwnedWindow& window : windows_) {
+    if (window.projection->when_factored() != Projection::Factors::kept) {
+      refuse("method.factors", "factoring in every iteration", "factors: kept");
+    }
+  }
+  if (particles_->getComm()->getSize() != 1) {
+    throw std::logic_error("PetrovGalerkin::point_block: the method is spread over several ranks");
+  }
+  return std::make_unique<ReducedBlock>(*this, *scheme, std::move(request));
+}
+
+}  // namespace kiln

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "framework/queries/PointBlock.hpp"
+#include "rom/projection/PetrovGalerkin.hpp"
+#include "rom/queries/PointHistory.hpp"
+#include "rom/queries/PointProjection.hpp"
+
+namespace kiln {
+
+/// Points of a Petrov–Galerkin method that advance together through its time windows by a linear multistep scheme.
+///
+/// TimeScheme and run_time_loop advance one unknown, and what they hand to Method::solve is the history of one; here
+/// all points' unknowns, histories and residuals stand next to each other, so that a basis, a neighbour or a weight is
+/// read once for all of them and the reconstruction of states is a product of matrices.
+class ReducedBlock final : public PointBlock {
+ public:
+  ReducedBlock(PetrovGalerkin& method, const LinearMultistep& scheme, AdvancesTogether::Request request);
+
+  void start() override;
+  void advance(int step, double time) override;
+  void tell(MatrixView u) const override { told_->states(x_, u); }
+  const std::vector<PointOutcome>& outcomes() const override { return outcomes_; }
+
+ private:
+  /// Goes over to another window: its equations, and the history at its rows.
+  void enter(std::size_t window);
+
+  PetrovGalerkin& method_;
+  ParameterPoints points_;
+  std::vector<LocalIndex> places_;
+  PointHistory history_;
+  MatrixView x_;  ///< points × coordinates
+  std::size_t window_ = 0;
+  std::unique_ptr<PointProjection> projection_;  ///< of the window
+  std::unique_ptr<TrialSpace> told_space_;       ///< likewise, at the places
+  std::unique_ptr<PointStates> told_;
+  std::vector<PointProjection::Point> states_;
+  std::vector<PointOutcome> outcomes_;
+};
+
+}  // namespace kiln

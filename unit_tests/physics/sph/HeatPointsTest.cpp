@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include "HeatCase.hpp"
+#include "framework/model/PointRates.hpp"
+
+namespace kiln {
+namespace {
+
+/// Thirteen points in states of their own: temperatures in every phase, beyond both ends of the table, and one that is
+/// not a number; powers, widths and places of the beam of their own.
+struct Points {
+  explicit Points(const Model& model, std::size_t count = 13)
+      : u("u", count, model.sources()->getNodeNumElements()), f("f", count, model.rows()->getNodeNumElements()) {
+    parameters.names = {"heat_source.power", "heat_source.width", "heat_source.start.x"};
+    for (std::size_t point = 0; point < count; ++point) {
+      const double k = static_cast<double>(point);
+      parameters.values.push_back({30.0 + k, (50.0 + k) * 1e-6, 0.02e-3 * k});
+      for (std::size_t j = 0; j < u.extent(1); ++j) {
+        const GlobalIndex id = model.sources()->getGlobalElement(static_cast<LocalIndex>(j));
+        u(point, j) = rough_temperature(id + static_cast<GlobalIndex>(1000 * point));
+      }
+      u(point, point) = point % 2 == 0 ? 150.0 - k : 6000.0 + 100.0 * k;
+      u(point, point + 1) = 200.0 + 1.0 * k;
+    }
+    u(0, 20) = 6000.0;
+    u(1, 20) = 200.0;
+  }
+  ParameterPoints parameters;
+  MatrixView u, f;
+};
+
+void expect_rates_of_each(Model& model, const Points& points, double time, double tolerance) {
+  const auto rates = model.at_points(points.parameters);
+  // Twice: what is kept of a time must serve again, and not another time.
+  for (const double at : {time, 2.0 * time, time}) {
+    rates->rates(points.u, at, points.f);
+    const VectorView u("u", points.u.extent(1)), f("f", points.f.extent(1));
+    for (std::size_t point = 0; point < points.parameters.count(); ++point) {
+      points.parameters.set(point, model.parameters());
+      take_point(points.u, point, u);
+      model.rate(u, at, f);
+      double largest = 0.0;
+      for (std::size_t i = 0; i < f.extent(0); ++i) largest = std::max(largest, std::abs(f(i)));
+      EXPECT_GT(largest, 0.0);
+      for (std::size_t i = 0; i < f.extent(0); ++i) {
+        EXPECT_NEAR(points.f(point, i), f(i), tolerance * largest) << "point " << point << ", row " << i;
+      }
+    }
+  }
+}
+
+TEST(HeatPoints, RatesAreThoseOfEachPointOnTheWholePart) {
+  const auto model = HeatCase().model();
+  expect_rates_of_each(*model, Points(*model), 1e-4, 1e-14);
+}
+
+TEST(HeatPoints, RatesAreThoseOfEachPointOnASampleMesh) {
+  const auto model = HeatCase().model();
+  const auto sampled = model->sampled({3, 100, 101, 330, 590, 600, 640});
+  for (const std::size_t count : {1, 8, 13, 16}) expect_rates_of_each(*sampled, Points(*sampled, count), 1e-4, 1e-14);
+}
+
+TEST(HeatPoints, ARateThatIsNotANumberStaysWithItsPoint) {
+  const auto model = HeatCase().model(alone());
+  Points points(*model);
+  const auto rates = model->at_points(points.parameters);
+  rates->rates(points.u, 1e-4, points.f);
+  MatrixView before("before", points.f.extent(0), points.f.extent(1));
+  Kokkos::deep_copy(before, points.f);
+  points.u(5, 40) = std::nan("");
+  rates->rates(points.u, 1e-4, points.f);
+  EXPECT_TRUE(std::isnan(points.f(5, 40)));
+  for (std::size_t point = 0; point < 13; ++point) {
+    if (point == 5) continue;
+    for (std::size_t i = 0; i < points.f.extent(1); ++i) EXPECT_EQ(points.f(point, i), before(point, i));
+  }
+}
+
+TEST(HeatPoints, RefuseOtherNumbersOfPointsAndUnknownParameters) {
+  const auto model = HeatCase().model();
+  const Points points(*model, 3), others(*model, 4);
+  EXPECT_THROW(model->at_points(points.parameters)->rates(others.u, 0.0, others.f), std::invalid_argument);
+  EXPECT_THROW(model->at_points({{"heat_source.powr"}, {{1.0}}}), InputError);
+}
+
+}  // namespace
+}  // namespace kiln
