@@ -359,7 +359,7 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
       errors = attempt(path.temporary(), aim, report);
     }
     if (!errors.diverged && reached(errors) > wanted) {
-      warn(fmt::format("windows with an error of {:.3g} % were asked for; the best of {} attempts has {:.3g} %: take "
+      warn(fmt::format("windows with an error of {:.3g} % were asked for; the last of {} attempts has {:.3g} %: take "
                        "more samples, residual modes or basis modes",
                        100 * wanted, most_attempts, 100 * reached(errors)),
            report);
