@@ -17,6 +17,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
 FOLDER = ROOT / "build/bench"
+# What sections share, and what reads the files of runs.
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "framework/report")]
 # valgrind 3.19 stops at AVX-512.
 INSTRUCTIONS_BUILD = ROOT / "build/instructions"
 
@@ -27,6 +29,8 @@ class Bench:
     def __init__(self, options):
         self.options = options
         self.folder = FOLDER
+        self.kiln = BUILD / "kiln"
+        self.inputs = ROOT / "inputs"
         self.machine = {}
 
     def program(self, name, *arguments, ranks=1):

@@ -1,10 +1,29 @@
-"""Growth of the full order over 9k, 70k and 560k particles, with a picture; asked for by --scale."""
+"""Growth over 9k, 70k and 560k particles: full order, training, online, with a picture; asked for by --scale."""
+import sys
+
+from kiln_case import KilnCase, figure
+
 only_on_request = True
+LATTICES = {"9k": (50, 25, 7), "70k": (100, 50, 14), "560k": (200, 100, 28)}
+# The first fifth of Experiment 1, in windows as long as the whole one's.
+SPAN = ["time.end=0.8 ms", "reduction.windows.count=4", "output.fields.every=200"]
 
 
 def figures(bench):
     result = bench.program("bench_fom", "scale")
-    draw({figure["name"]: figure for figure in result}, bench.folder / "scale.png")
+    for name, count in LATTICES.items():
+        print(f"bench: scale: online, {name} particles", file=sys.stderr)
+        case = KilnCase(bench, bench.inputs / "nrl-2022/experiment-1.yaml", bench.folder / f"scale/{name}",
+                        [*SPAN, f"model.particles.count=[{', '.join(map(str, count))}]"])
+        reduction, training = case.train("training")
+        full = case.full_order()
+        steps = full.report["run"]["steps"]
+        walls = [case.online(reduction)[1] for _ in range(5)]
+        result += [figure(f"scale.online_us_per_step_{name}", [1e6 * wall / steps for wall in walls], "us"),
+                   figure(f"scale.train_in_fom_runs_{name}", [training / full.report["time"]["loop_wall_s"]]),
+                   figure(f"scale.full_order_us_per_step_{name}", [1e6 * full.report["time"]["loop_wall_s"] / steps],
+                          "us")]
+    draw({each["name"]: each for each in result}, bench.folder / "scale.png")
     return result
 
 
@@ -13,18 +32,23 @@ def draw(figures, path):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    sizes = {"9k": 50 * 25 * 7, "70k": 100 * 50 * 14, "560k": 200 * 100 * 28}
-    pairs = [figures[f"scale.fom_ns_per_pair_{name}"] for name in sizes]
-    values = [figure["value"] for figure in pairs]
-    below = [figure["value"] - figure["low"] for figure in pairs]
-    above = [figure["high"] - figure["value"] for figure in pairs]
-    figure, (time, memory) = pyplot.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
-    time.errorbar(list(sizes.values()), values, yerr=[below, above], marker="o", capsize=4)
-    time.set(xscale="log", xlabel="particles", ylabel="ns a directed pair", title="one evaluation of the rate")
-    time.set_ylim(bottom=0)
+    sizes = [x * y * z for x, y, z in LATTICES.values()]
+
+    def values(what):
+        return [figures[f"scale.{what}_{name}"]["value"] for name in LATTICES]
+
+    pairs = [figures[f"scale.fom_ns_per_pair_{name}"] for name in LATTICES]
+    spread = [[each["value"] - each["low"] for each in pairs], [each["high"] - each["value"] for each in pairs]]
+    picture, (rate, memory, step) = pyplot.subplots(1, 3, figsize=(12, 3.4), layout="constrained")
+    rate.errorbar(sizes, values("fom_ns_per_pair"), yerr=spread, marker="o", capsize=4)
+    rate.set(xscale="log", xlabel="particles", ylabel="ns a directed pair", title="one evaluation of the rate")
+    rate.set_ylim(bottom=0)
     for label, key in (("pair list", "pair_list"), ("lattice", "layout")):
-        memory.plot(list(sizes.values()),
-                    [figures[f"scale.{key}_bytes_per_particle_{name}"]["value"] for name in sizes], "o-", label=label)
+        memory.plot(sizes, values(f"{key}_bytes_per_particle"), "o-", label=label)
     memory.set(xscale="log", yscale="log", xlabel="particles", ylabel="bytes a particle", title="memory of the pairs")
     memory.legend()
-    figure.savefig(path, dpi=130)
+    for label, key in (("full order", "full_order_us_per_step"), ("online", "online_us_per_step")):
+        step.plot(sizes, values(key), "o-", label=label)
+    step.set(xscale="log", yscale="log", xlabel="particles", ylabel="µs a step", title="a step, two ranks")
+    step.legend()
+    picture.savefig(path, dpi=130)

@@ -1,0 +1,50 @@
+"""An input that sections of ./dev bench train, run in full order and run reduced, on two ranks."""
+import json
+import shutil
+import statistics
+
+from run_folder import RunFolder
+
+# An online run takes milliseconds: the middle of several stands for one.
+ONLINE_RUNS = 5
+
+
+class KilnCase:
+    """Runs of one input with some of its values changed, below a folder of their own."""
+
+    def __init__(self, bench, file, folder, changes=()):
+        self.bench = bench
+        self.file = file
+        self.folder = folder
+        self.changes = list(changes)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+
+    def kiln(self, command, name, *changes):
+        """The run folder that `kiln COMMAND` leaves below `name`."""
+        words = [word for change in [*self.changes, *changes] for word in ("--set", change)]
+        self.bench.run(["mpirun", "-n", "2", str(self.bench.kiln), command, str(self.file), "--quiet",
+                        "--set", f"output.directory={self.folder / name}", *words])
+        return self.folder / name
+
+    def train(self, name, *changes):
+        """The reduction file and the training's wall time in s."""
+        folder = self.kiln("train", name, *changes)
+        report = json.loads((folder / "training/report.json").read_text())
+        return folder / "reduction.h5", report["time"]["total_wall_s"]
+
+    def full_order(self):
+        return RunFolder(self.kiln("run", "full-order", "method.type=fom") / "fom")
+
+    def online(self, reduction, method="gnat"):
+        """The last of several runs, and the middle one's wall and CPU time in s."""
+        times = []
+        for _ in range(ONLINE_RUNS):
+            run = RunFolder(self.kiln("run", "online", f"method.type={method}", f"method.file={reduction}") / method)
+            times.append((run.report["time"]["loop_wall_s"], run.report["time"]["loop_cpu_s"]))
+        return run, statistics.median(wall for wall, _ in times), statistics.median(cpu for _, cpu in times)
+
+
+def figure(name, values, unit=""):
+    return {"name": name, "value": statistics.median(values), "unit": unit, "low": min(values), "high": max(values),
+            "runs": len(values)}
