@@ -5,6 +5,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <limits>
+#include <utility>
 
 #include "framework/files/CsvTable.hpp"
 #include "framework/registry/Registry.hpp"
@@ -15,6 +16,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* file_name = "extremes.csv";
+
+/// Smallest and largest of the values first, first + stride, …; infinity and −infinity of none.
+template <class View>
+std::pair<double, double> range(const View& values, std::size_t first, std::size_t stride) {
+  double smallest = infinity, largest = -infinity;
+  const double* const data = values.data();
+#pragma omp simd reduction(min : smallest) reduction(max : largest)
+  for (std::size_t index = first; index < values.extent(0); index += stride) {
+    smallest = data[index] < smallest ? data[index] : smallest;
+    largest = data[index] > largest ? data[index] : largest;
+  }
+  return {smallest, largest};
+}
 
 }  // namespace
 
@@ -49,15 +63,14 @@ std::vector<Extremes::Extreme> Extremes::local_extremes(const Moment& moment) {
   const std::size_t components = fields_.size();
   std::vector<Extreme> extremes;
   for (std::size_t component = 0; component < components; ++component) {
-    std::size_t largest = component, smallest = component;
-    for (std::size_t index = component; index < state.extent(0); index += components) {
-      if (state(index) > state(largest)) largest = index;
-      if (state(index) < state(smallest)) smallest = index;
-    }
-    const auto extreme = [&](std::size_t index, double none) {
-      if (index >= state.extent(0)) return Extreme{none, -1.0};
-      const auto particle = static_cast<LocalIndex>(index / components);
-      return Extreme{state(index), static_cast<double>(context_.method.particles()->getGlobalElement(particle))};
+    const auto [smallest, largest] = range(state, component, components);
+    const auto extreme = [&](double value, double none) {
+      for (std::size_t index = component; index < state.extent(0); index += components) {
+        if (state(index) != value) continue;
+        const auto particle = static_cast<LocalIndex>(index / components);
+        return Extreme{value, static_cast<double>(context_.method.particles()->getGlobalElement(particle))};
+      }
+      return Extreme{none, -1.0};
     };
     extremes.push_back(extreme(largest, -infinity));
     extremes.push_back(extreme(smallest, infinity));

@@ -16,9 +16,12 @@
 namespace kiln {
 namespace {
 
+// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string add_level_label = "kiln::time::add a level to the history";
+
 void add_level(double alpha, const ConstVectorView& u, const VectorView& history) {
   Kokkos::parallel_for(
-      "kiln::time::add_state_to_history", RangePolicy(0, static_cast<LocalIndex>(history.extent(0))),
+      add_level_label, RangePolicy(0, static_cast<LocalIndex>(history.extent(0))),
       KOKKOS_LAMBDA(const LocalIndex i) { history(i) += alpha * u(i); });
 }
 

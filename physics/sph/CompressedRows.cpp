@@ -1,3 +1,5 @@
+#include <string>
+
 #include "physics/sph/PairLayout.hpp"
 #include "physics/sph/PairRows.hpp"
 
@@ -9,6 +11,9 @@ constexpr LocalIndex multiple = lane_count;
 #else
 constexpr LocalIndex multiple = 1;
 #endif
+
+// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string sum_label = "kiln::sph::sum compressed rows";
 
 /// The domain's rows, each made up to a multiple of the lanes with pairs of no weight.
 HeatDomain whole_lanes(const HeatDomain& domain) {
@@ -44,8 +49,7 @@ HeatDomain whole_lanes(const HeatDomain& domain) {
 template <PairQuantity quantity>
 void sum_rows(const PairRows& pairs, const ConstThermalStateView& states, const VectorView& sums) {
   Kokkos::parallel_for(
-      "kiln::sph::sum compressed rows", RangePolicy(0, static_cast<LocalIndex>(sums.extent(0))),
-      KOKKOS_LAMBDA(LocalIndex i) {
+      sum_label, RangePolicy(0, static_cast<LocalIndex>(sums.extent(0))), KOKKOS_LAMBDA(LocalIndex i) {
 #ifdef KILN_LANES
         sums(i) = pair_sum_by_lanes<quantity>(states.data(), states(i), pairs.sources_of(i), pairs.weights_of(i),
                                               pairs.count(i));

@@ -3,15 +3,23 @@
 #include <fmt/format.h>
 
 #include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "framework/registry/Registry.hpp"
 #include "physics/sph/Kernel.hpp"
 #include "physics/sph/Material.hpp"
 #include "physics/sph/Particles.hpp"
+#include "physics/sph/ThermalLanes.hpp"
 
 namespace kiln {
 namespace {
+
+// Labels made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string thermal_lanes_label = "kiln::sph::thermal states, eight at a time";
+const std::string thermal_states_label = "kiln::sph::thermal states";
+const std::string absorbed_label = "kiln::sph::absorbed power";
+const std::string rate_label = "kiln::sph::rate";
 
 constexpr double default_from = 200.0;
 constexpr double default_to = 6000.0;
@@ -125,21 +133,44 @@ void HeatModel::update_states(ConstVectorView u) const {
   const auto states = states_;
   const auto masses = domain_.masses;
   const MaterialTable table = table_;
+  LocalIndex first = 0;
+#ifdef KILN_LANES
+  const LocalIndex whole = source_count() / lane_count;
+  first = whole * lane_count;
   Kokkos::parallel_for(
-      "kiln::sph::thermal states", RangePolicy(0, source_count()),
+      thermal_lanes_label, RangePolicy(0, whole), KOKKOS_LAMBDA(LocalIndex group) {
+        const LocalIndex j = group * lane_count;
+        store_states(&states(j), thermal_lanes(table, lanes_at(&u(j)), lanes_at(&masses(j))));
+      });
+#endif
+  Kokkos::parallel_for(
+      thermal_states_label, RangePolicy(first, source_count()),
       KOKKOS_LAMBDA(LocalIndex j) { states(j) = thermal_state(table, u(j), masses(j)); });
+}
+
+bool HeatModel::absorbed_holds(double time) const {
+  const std::vector<Parameter>& parameters = heat_source_->parameters().list();
+  const auto same = [](double told, const Parameter& parameter) { return told == *parameter.value; };
+  if (!absorbed_at_.empty() && absorbed_at_.back() == time &&
+      std::equal(absorbed_at_.begin(), absorbed_at_.end() - 1, parameters.begin(), parameters.end(), same)) {
+    return true;
+  }
+  absorbed_at_.clear();
+  for (const Parameter& parameter : parameters) absorbed_at_.push_back(*parameter.value);
+  absorbed_at_.push_back(time);
+  return false;
 }
 
 void HeatModel::update_absorbed(double time) const {
   const auto number = static_cast<LocalIndex>(heated_.extent(0));
-  if (number == 0) return;
+  if (number == 0 || absorbed_holds(time)) return;
   heat_source_->flux(time, heated_positions_, heated_flux_);
   const auto absorbed = absorbed_;
   const auto heated = heated_;
   const auto flux = heated_flux_;
   const auto areas = domain_.areas;
   Kokkos::parallel_for(
-      "kiln::sph::absorbed power", RangePolicy(0, number),
+      absorbed_label, RangePolicy(0, number),
       KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
 }
 
@@ -153,7 +184,7 @@ void HeatModel::rate(ConstVectorView u, double time, VectorView f) const {
   const auto masses = domain_.masses;
   const auto absorbed = absorbed_;
   Kokkos::parallel_for(
-      "kiln::sph::rate", RangePolicy(0, row_count()),
+      rate_label, RangePolicy(0, row_count()),
       KOKKOS_LAMBDA(LocalIndex i) { f(i) = heat_rate(states(i), sums(i), masses(i), absorbed(i)); });
 }
 

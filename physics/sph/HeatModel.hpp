@@ -70,6 +70,9 @@ class HeatModel final : public Model {
   void linearise(ConstVectorView u, double time) const;
   /// Fills absorbed_ at the heated rows.
   void update_absorbed(double time) const;
+  /// Whether absorbed_ is that of this time and of the source's parameters as they are; if not, it will be. One
+  /// evaluation of the source serves all iterations of a step.
+  bool absorbed_holds(double time) const;
   /// Columns first_column … of `product`, at most Width.
   template <int Width>
   void apply_columns(ConstMatrixView v, MatrixView product, int first_column) const;
@@ -101,6 +104,7 @@ class HeatModel final : public Model {
   // Work arrays: the sampled model is evaluated millions of times and must not allocate.
   VectorView heated_flux_;                               ///< q in W/m² at heated_
   VectorView absorbed_;                                  ///< q_i A_i in W of every row
+  mutable std::vector<double> absorbed_at_;              ///< the parameters and, last, the time it was taken at
   VectorView sums_;                                      ///< of a PairQuantity, of every row
   ThermalStateView states_;                              ///< of the sources and, last, nobody
   mutable Kokkos::View<ThermalSlopes*, Device> slopes_;  ///< made by the first Jacobian

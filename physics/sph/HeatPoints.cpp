@@ -1,60 +1,15 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
-#include <vector>
 
 #include "framework/model/PointRates.hpp"
 #include "physics/sph/HeatModel.hpp"
 #include "physics/sph/PairRows.hpp"
+#include "physics/sph/ThermalLanes.hpp"
 
 namespace kiln {
 
 #ifdef KILN_LANES
-namespace {
-
-/// A row of a material table: k, c, ρ and their differences to the next row, in one cache line.
-struct alignas(64) TableRow {
-  double values[lane_count / 2];
-  double differences[lane_count / 2];
-};
-using TableView = Kokkos::View<TableRow*, Device>;
-
-TableView rows_of(const MaterialTable& table) {
-  const std::vector<double> values = table.values();
-  const std::size_t intervals = values.size() / 3 - 1;
-  const TableView rows("rows of a material table", intervals);
-  const auto host = Kokkos::create_mirror_view(rows);
-  for (std::size_t i = 0; i < intervals; ++i) {
-    host(i) = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      host(i).values[k] = values[3 * i + k];
-      host(i).differences[k] = values[3 * i + 3 + k] - values[3 * i + k];
-    }
-  }
-  Kokkos::deep_copy(rows, host);
-  return rows;
-}
-
-/// MaterialTable::at for eight temperatures.
-inline MaterialPoint<Lanes> properties_at(const MaterialTable& table, const TableRow* rows, const Lanes& u) {
-  double fraction[lane_count];
-  int interval[lane_count];
-#pragma omp simd
-  for (int lane = 0; lane < lane_count; ++lane) interval[lane] = table.interval(u[lane], fraction[lane]);
-  HalfLanes records[lane_count];
-  for (int lane = 0; lane < lane_count; ++lane) {
-    const TableRow& row = rows[interval[lane]];
-    HalfLanes values, differences;
-    __builtin_memcpy(&values, row.values, sizeof values);
-    __builtin_memcpy(&differences, row.differences, sizeof differences);
-    records[lane] = values + fraction[lane] * differences;
-  }
-  const FieldLanes fields = field_lanes(records);
-  return {fields.first, fields.second, fields.third};
-}
-
-}  // namespace
-
 /// Eight points are a vector; its lanes are the same particle in eight states. What a pair reads of its neighbour are
 /// whole vectors, so that nothing is gathered, and neighbours and weights serve eight points.
 class HeatModel::AtPoints final : public PointRates {
@@ -62,7 +17,6 @@ class HeatModel::AtPoints final : public PointRates {
   AtPoints(HeatModel& model, const ParameterPoints& points)
       : model_(model),
         points_(points),
-        table_rows_(rows_of(model.table_)),
         groups_((points.count() + lane_count - 1) / lane_count),
         states_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "thermal states of points"),
                 groups_ * static_cast<std::size_t>(model.source_count())),
@@ -117,7 +71,6 @@ class HeatModel::AtPoints final : public PointRates {
     const auto specific_heats = specific_heats_;
     const auto masses = model_.domain_.masses;
     const MaterialTable table = model_.table_;
-    const TableView table_rows = table_rows_;
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
     Kokkos::parallel_for(
@@ -128,12 +81,10 @@ class HeatModel::AtPoints final : public PointRates {
           } else {
             for (std::size_t lane = 0; lane < points; ++lane) temperature[lane] = u(first_point + lane, j);
           }
-          const MaterialPoint<Lanes> point = properties_at(table, table_rows.data(), temperature);
-          // As thermal_state, with one divide for 1/k and m/ρ: half of the time goes into dividing.
-          const Lanes both = 1.0 / (point.conductivity * point.density);
-          states(first + j) = {temperature, both * point.density, masses(j) * both * point.conductivity};
+          const ThermalLanes state = thermal_lanes(table, temperature, all_lanes(masses(j)));
+          states(first + j) = {state.temperature, state.resistivity, state.volume};
           if (static_cast<std::size_t>(j) < rows) {
-            store_lanes(&specific_heats(group * rows + j, 0), point.specific_heat);
+            store_lanes(&specific_heats(group * rows + j, 0), state.specific_heat);
           }
         });
   }
@@ -165,7 +116,6 @@ class HeatModel::AtPoints final : public PointRates {
 
   HeatModel& model_;
   ParameterPoints points_;
-  TableView table_rows_;
   std::size_t groups_;                        ///< of eight points each, the last one perhaps of fewer
   Kokkos::View<StateLanes*, Device> states_;  ///< group by group: of the sources
   LaneView specific_heats_;                   ///< group by group: of the rows

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string beam_label = "kiln::sph::gaussian beam";
+
 /// Eq. 9: P/(2πσ²) exp(−r²/(2σ²)) with r the distance from start + velocity · t in the x-y plane, which deposits P; or,
 /// as the report prints it, exp(−r²/(2πσ²)), which deposits πP.
 class GaussianBeam final : public HeatSource {
@@ -56,8 +59,7 @@ class GaussianBeam final : public HeatSource {
     const double peak = power_ / (2.0 * pi * width_ * width_);
     const double exponent = -1.0 / (2.0 * (printed_ ? pi : 1.0) * width_ * width_);
     Kokkos::parallel_for(
-        "kiln::sph::gaussian beam", RangePolicy(0, static_cast<LocalIndex>(positions.extent(0))),
-        KOKKOS_LAMBDA(LocalIndex i) {
+        beam_label, RangePolicy(0, static_cast<LocalIndex>(positions.extent(0))), KOKKOS_LAMBDA(LocalIndex i) {
           const double dx = positions(i, 0) - x;
           const double dy = positions(i, 1) - y;
           q(i) = peak * exp(exponent * (dx * dx + dy * dy));

@@ -18,7 +18,8 @@ class HeatSource {
   HeatSource& operator=(const HeatSource&) = delete;
   virtual ~HeatSource() = default;
 
-  /// q in W/m² at each position (m) at a time (s); overwritten.
+  /// q in W/m² at each position (m) at a time (s); overwritten. Depends on these and on the parameters alone: for one
+  /// time it is asked once.
   virtual void flux(double time, ConstPositionView positions, VectorView q) const = 0;
 
   Parameters& parameters() { return parameters_; }

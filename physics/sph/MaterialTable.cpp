@@ -48,17 +48,25 @@ MaterialTable::MaterialTable(double from, double step, const std::vector<double>
   if (values.size() % 3 != 0 || intervals_ < 1) {
     throw std::invalid_argument(fmt::format("{} numbers do not make a material table", values.size()));
   }
-  const Kokkos::View<double* [3], Kokkos::LayoutRight, Device> table("material table", values.size() / 3);
-  const auto host = Kokkos::create_mirror_view(table);
-  for (std::size_t i = 0; i < values.size(); ++i) host(i / 3, i % 3) = values[i];
-  Kokkos::deep_copy(table, host);
-  values_ = table;
+  const Kokkos::View<MaterialRow*, Device> rows("material table", values.size() / 3);
+  const auto host = Kokkos::create_mirror_view(rows);
+  for (std::size_t i = 0; i < host.extent(0); ++i) {
+    host(i) = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      host(i).values[k] = values[3 * i + k];
+      if (i + 1 < host.extent(0)) host(i).differences[k] = values[3 * i + 3 + k] - values[3 * i + k];
+    }
+  }
+  Kokkos::deep_copy(rows, host);
+  rows_ = rows;
 }
 
 std::vector<double> MaterialTable::values() const {
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values_);
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows_);
   std::vector<double> values;
-  for (std::size_t i = 0; i < host.extent(0); ++i) values.insert(values.end(), {host(i, 0), host(i, 1), host(i, 2)});
+  for (std::size_t i = 0; i < host.extent(0); ++i) {
+    values.insert(values.end(), host(i).values, host(i).values + 3);
+  }
   return values;
 }
 

@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
@@ -26,6 +27,13 @@ struct MaterialPoint {
   Scalar density;        ///< ρ in kg/m³
 };
 
+/// k, c, ρ at a tabulated temperature and their differences to the next one's (0 at the table's end), in one cache
+/// line. The fourth number is nothing: vectors load four at once.
+struct alignas(64) MaterialRow {
+  double values[4];
+  double differences[4];
+};
+
 /// Properties of a material over temperature, in equal steps with linear interpolation between (Eqs. 18–20) and the end
 /// values outside. Cheap to copy into kernels.
 class MaterialTable {
@@ -36,42 +44,39 @@ class MaterialTable {
   /// From values() of another table: k, c, ρ at from, from + step, … Throws std::invalid_argument for fewer than two.
   MaterialTable(double from, double step, const std::vector<double>& values);
 
-  /// Properties at temperature u (K), of any scalar type: derivatives with respect to u ride along.
+  /// Properties at temperature u (K), of any scalar type: derivatives with respect to u ride along. A temperature that
+  /// is not a number has those of the table's end; it shows in the temperature differences.
   template <class Scalar>
   KOKKOS_INLINE_FUNCTION MaterialPoint<Scalar> at(const Scalar& u) const {
-    const double place = (value_of(u) - from_) * inverse_step_;
-    if (place < 0.0) return {Scalar(values_(0, 0)), Scalar(values_(0, 1)), Scalar(values_(0, 2))};
-    // Written so that NaN ends here as well; a temperature that is not a number shows in the temperature difference.
-    if (!(place < intervals_)) {
-      return {Scalar(values_(intervals_, 0)), Scalar(values_(intervals_, 1)), Scalar(values_(intervals_, 2))};
+    const double value = value_of(u);
+    double fraction;
+    const MaterialRow& row = rows_(interval(value, fraction));
+    if constexpr (std::is_same_v<Scalar, double>) {
+      return interpolated(row, fraction);
+    } else {
+      return interpolated(row, Scalar(fraction + (u - value) * (value < from_ ? 0.0 : inverse_step_)));
     }
-    const auto i = static_cast<LocalIndex>(place);
-    const Scalar fraction = (u - from_) * inverse_step_ - static_cast<double>(i);
-    return {values_(i, 0) + fraction * (values_(i + 1, 0) - values_(i, 0)),
-            values_(i, 1) + fraction * (values_(i + 1, 1) - values_(i, 1)),
-            values_(i, 2) + fraction * (values_(i + 1, 2) - values_(i, 2))};
   }
 
-  /// The interval of the table that at(u) interpolates in, and how far into it u lies: 0 and 1 where at(u) takes an end
-  /// of the table. Without a branch, for vectors.
+  /// The row at or below u, and how far u lies from it to the next one, less than 1; 0 outside the table. Without a
+  /// branch, for vectors.
   KOKKOS_FORCEINLINE_FUNCTION int interval(double u, double& fraction) const {
     double place = (u - from_) * inverse_step_;
-    // Not a number ends at the table's end, as in at().
     place = place < intervals_ ? place : intervals_;
     place = place > 0.0 ? place : 0.0;
     const int i = static_cast<int>(place);
-    const int inside = i < intervals_ ? i : intervals_ - 1;
-    fraction = place - inside;
-    return inside;
+    fraction = place - i;
+    return i;
   }
+  /// One row for each tabulated temperature, in a kernel.
+  const MaterialRow* rows() const { return rows_.data(); }
 
   /// d/du of the properties, per K: those of the interval u lies in, 0 outside the table.
   KOKKOS_INLINE_FUNCTION MaterialPoint<double> slopes(double u) const {
     const double place = (u - from_) * inverse_step_;
     if (!(place >= 0.0 && place < intervals_)) return {0.0, 0.0, 0.0};
-    const auto i = static_cast<LocalIndex>(place);
-    return {(values_(i + 1, 0) - values_(i, 0)) * inverse_step_, (values_(i + 1, 1) - values_(i, 1)) * inverse_step_,
-            (values_(i + 1, 2) - values_(i, 2)) * inverse_step_};
+    const MaterialRow& row = rows_(static_cast<LocalIndex>(place));
+    return {row.differences[0] * inverse_step_, row.differences[1] * inverse_step_, row.differences[2] * inverse_step_};
   }
 
   double from() const { return from_; }
@@ -80,11 +85,18 @@ class MaterialTable {
   std::vector<double> values() const;
 
  private:
+  template <class Scalar>
+  KOKKOS_FORCEINLINE_FUNCTION static MaterialPoint<Scalar> interpolated(const MaterialRow& row,
+                                                                        const Scalar& fraction) {
+    return {row.values[0] + fraction * row.differences[0], row.values[1] + fraction * row.differences[1],
+            row.values[2] + fraction * row.differences[2]};
+  }
+
   double from_;
   double step_;
   double inverse_step_;
   LocalIndex intervals_;
-  Kokkos::View<const double* [3], Kokkos::LayoutRight, Device> values_;
+  Kokkos::View<const MaterialRow*, Device> rows_;
 };
 
 }  // namespace kiln

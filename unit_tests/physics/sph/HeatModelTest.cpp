@@ -85,6 +85,24 @@ TEST(HeatModel, EnergyBalance) {
   }
 }
 
+TEST(HeatModel, TakesANewParameterAtTheSameTime) {
+  const HeatCase heat_case;
+  const auto model = heat_case.model();
+  const VectorView u = rough_state(*model);
+  const VectorView before = rate_of(*model, u, 3e-4);
+  model->parameters().set("heat_source.power", 2.0 * model->parameters().get("heat_source.power"));
+  const VectorView f = rate_of(*model, u, 3e-4);
+  const auto fresh = heat_case.model();
+  fresh->parameters().set("heat_source.power", model->parameters().get("heat_source.power"));
+  const VectorView expected = rate_of(*fresh, u, 3e-4);
+  double change = 0.0;
+  for (std::size_t i = 0; i < f.extent(0); ++i) {
+    EXPECT_EQ(f(i), expected(i));
+    change += std::abs(f(i) - before(i));
+  }
+  EXPECT_GT(summed(change), 0.0);
+}
+
 TEST(HeatModel, UniformTemperatureIsSteady) {
   HeatCase heat_case;
   heat_case.heat_source = HeatCase::no_source();
