@@ -177,7 +177,7 @@ Axes tabulated(const std::string& file, const Parameters& parameters) {
 
 }  // namespace
 
-Specification query_specification() {
+Specification points_specification() {
   Specification s;
   s.dictionary("points",
                "values of the model's live parameters, by name: a value for each point, e.g. {heat_source.power: "
@@ -186,9 +186,6 @@ Specification query_specification() {
   s.file("file", "a table of points instead (CSV): a column a parameter, its name and perhaps [unit] on top")
       .optional();
   s.flag("grid", "all combinations of the values listed, the last parameter fastest; for `points`").defaults_to(false);
-  s.integer("together", "points that advance together where the method offers it; 1: each has a run of its own")
-      .at_least(1)
-      .defaults_to(16);
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     const bool points = list.isSublist("points"), file = list.isParameter("file");
     if (points == file) {
@@ -204,10 +201,18 @@ Specification query_specification() {
   return s;
 }
 
-ParameterPoints query_points(const Teuchos::ParameterList& queries, const Parameters& parameters) {
-  const bool grid = queries.get<bool>("grid");
-  const Axes axes = queries.isSublist("points") ? listed(queries.sublist("points"), parameters, grid)
-                                                : tabulated(queries.get<std::string>("file"), parameters);
+Specification query_specification() {
+  Specification s = points_specification();
+  s.integer("together", "points that advance together where the method offers it; 1: each has a run of its own")
+      .at_least(1)
+      .defaults_to(16);
+  return s;
+}
+
+ParameterPoints points_of(const Teuchos::ParameterList& block, const Parameters& parameters) {
+  const bool grid = block.get<bool>("grid");
+  const Axes axes = block.isSublist("points") ? listed(block.sublist("points"), parameters, grid)
+                                              : tabulated(block.get<std::string>("file"), parameters);
   return grid ? combinations(axes) : rows(axes);
 }
 

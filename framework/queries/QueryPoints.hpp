@@ -7,12 +7,14 @@
 
 namespace kiln {
 
-/// Keys of the block `queries`: points of a model's live parameters, all of which one run answers.
+/// Keys of a block that lists points of a model's live parameters: points, file, grid.
+Specification points_specification();
+/// The same and `together`: keys of the block `queries`, whose points one run answers.
 Specification query_specification();
 
-/// The points that a checked block `queries` lists, or the table it names: in SI units. With `grid` all combinations,
-/// the last parameter fastest. Throws InputError with all mistakes of `points`, FileError for a table whose columns are
-/// no parameters or no numbers.
-ParameterPoints query_points(const Teuchos::ParameterList& queries, const Parameters& parameters);
+/// The points that a checked block lists, or the table it names: in SI units. With `grid` all combinations, the last
+/// parameter fastest. Throws InputError with all mistakes of `points`, FileError for a table whose columns are no
+/// parameters or no numbers.
+ParameterPoints points_of(const Teuchos::ParameterList& block, const Parameters& parameters);
 
 }  // namespace kiln

@@ -70,7 +70,7 @@ QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Commu
       every_(probe_block(input).get<int>("every")) {
   build_method();
   const Teuchos::ParameterList& queries = input.sublist("queries");
-  answers_.points = query_points(queries, method_->parameters());
+  answers_.points = points_of(queries, method_->parameters());
   for (const std::string& name : answers_.points.names) {
     const auto& list = method_->parameters().list();
     const auto named = [&name](const Parameter& parameter) { return parameter.name == name; };

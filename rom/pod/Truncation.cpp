@@ -85,7 +85,8 @@ Truncation truncate(const std::vector<double>& singular_values, const PodSetting
   double kept = 0.0;
   int rank = 0;
   const auto enough = [&] {
-    return settings.rank ? rank == *settings.rank : kept >= settings.energy.value_or(1.0) * total;
+    if (settings.rank) return rank == *settings.rank;
+    return rank >= settings.at_least && kept >= settings.energy.value_or(1.0) * total;
   };
   while (rank < independent && !enough()) kept += weight(singular_values[rank++]);
   return {rank, independent, kept / total};

@@ -24,6 +24,7 @@ struct PodSettings {
   std::optional<int> rank;
   bool rank_is_cap = false;      ///< fewer vectors will do where the snapshots hold no more
   std::optional<double> energy;  ///< fraction in (0, 1]
+  int at_least = 0;              ///< vectors where the energy alone asks for fewer and the snapshots hold more
 
   PodSettings() = default;
   explicit PodSettings(const Teuchos::ParameterList& list);
@@ -41,8 +42,9 @@ struct Truncation {
   double energy;    ///< fraction kept, of the independent ones' Σσ² or Σσ
 };
 
-/// Smallest rank that keeps the energy asked for, or the rank asked for. `singular_values` descend. Throws InputError
-/// if nothing is independent (all snapshots zero) or a rank above `independent` is asked for.
+/// Smallest rank that keeps the energy asked for (at least `at_least`), or the rank asked for. `singular_values`
+/// descend. Throws InputError if nothing is independent (all snapshots zero) or a rank above `independent` is asked
+/// for.
 Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings);
 
 }  // namespace kiln

@@ -13,15 +13,12 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
-#include "framework/method/FullOrder.hpp"
 #include "framework/model/Halo.hpp"
 #include "framework/model/MaskedModel.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/Sampling.hpp"
-#include "rom/training/Queries.hpp"
-#include "rom/training/SnapshotObserver.hpp"
 
 namespace kiln {
 namespace {
@@ -29,8 +26,6 @@ namespace {
 /// Below this, A = [PΦ_r]⁺ amplifies what Φ_r misses more than a hundredfold.
 constexpr double small_sigma = 1e-2;
 
-/// Moments at which the trial run's whole field is compared with the full-order one.
-constexpr int trial_moments = 20;
 /// How often windows are cut shorter for an error they have missed.
 constexpr int most_attempts = 4;
 
@@ -63,6 +58,12 @@ nlohmann::json facts_of(const Pod& pod) {
           {"reorthogonalised", pod.reorthogonalised}};
 }
 
+/// One point's way through the windows.
+struct Marcher {
+  VectorView x;
+  std::unique_ptr<TimeScheme> scheme;
+};
+
 /// PΦ_r on every rank: the rows of the sampled particles, each with its components.
 MatrixView sampled_rows(const Map& rows, const MatrixView& modes, const std::vector<GlobalIndex>& ids, int components) {
   MatrixView result("kiln::rom::P Phi_r", ids.size() * components, modes.extent(1));
@@ -88,7 +89,9 @@ Specification ProcedureTwo::specification() {
             WindowSettings::specification())
       .optional();
   s.section("basis", "trial basis of a window, from snapshots of the state", PodSettings::specification());
-  s.section("residual_basis", "basis of a window's residual, from an LSPG run without hyper-reduction",
+  s.section("residual_basis",
+            "basis of a window's residual, from an LSPG run without hyper-reduction; by energy it has at least as many "
+            "vectors as the trial basis",
             PodSettings::specification());
   s.component<Sampling>("sampling", "which particles the hyper-reduced run evaluates").defaults_to("greedy");
   s.section("snapshots", "of the full-order state", snapshot_specification());
@@ -96,10 +99,24 @@ Specification ProcedureTwo::specification() {
              "further positions whose state online runs can tell; probes of the output are always among them",
              query_specification())
       .optional();
+  FullOrderRuns::specify(s);
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     const bool by_error = list.isSublist("windows") && list.sublist("windows").isParameter("error");
-    if (by_error && !list.sublist("basis").isParameter("rank")) {
+    const Teuchos::ParameterList& basis = list.sublist("basis");
+    const Teuchos::ParameterList& residual_basis = list.sublist("residual_basis");
+    if (by_error && !basis.isParameter("rank")) {
       problems.push_back({"windows.error", "goes with a basis of fixed rank, and basis has none", "basis.rank", {}});
+    }
+    if (by_error && list.isSublist("train_on")) {
+      problems.push_back({"windows.error", "goes with one point to learn from", "windows.count or windows.steps", {}});
+    }
+    if (basis.isParameter("rank") && residual_basis.isParameter("rank") &&
+        residual_basis.get<int>("rank") < basis.get<int>("rank")) {
+      problems.push_back({"residual_basis.rank",
+                          fmt::format("{} residual modes do not determine the coordinates of {} basis vectors",
+                                      residual_basis.get<int>("rank"), basis.get<int>("rank")),
+                          fmt::format("at least basis.rank, {}", basis.get<int>("rank")),
+                          {}});
     }
   });
   return s;
@@ -115,9 +132,7 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
       basis_settings_(block.sublist("basis")),
       residual_settings_(block.sublist("residual_basis")),
       windows_(WindowSettings::of(block.isSublist("windows") ? &block.sublist("windows") : nullptr)),
-      every_(block.sublist("snapshots").get<int>("every")),
-      snapshots_(0),
-      trial_{{}, {}, {}, Snapshots(0)} {
+      every_(block.sublist("snapshots").get<int>("every")) {
   // In one window a rank too high is a mistake; of several, some may hold less.
   basis_settings_.rank_is_cap = residual_settings_.rank_is_cap = windows_.count != 1;
 }
@@ -140,38 +155,6 @@ void ProcedureTwo::hold_at_most(Snapshots& snapshots) const {
 void ProcedureTwo::warn(const std::string& warning, RunReport& report) const {
   report.section("training")["warnings"].push_back(warning);
   if (communicator_->getRank() == 0) fmt::print(stderr, "warning: {}\n", warning);
-}
-
-void ProcedureTwo::run_full_order(RunReport& report) {
-  FullOrder method(block_, Method::Context{input_, communicator_});
-  model_ = method.model();
-  reference_ = VectorView("kiln::rom::initial state", local_size(*model_->sources()) * model_->fields().size());
-  model_->initial_state(reference_);
-  snapshots_ = Snapshots(method.row_size());
-  if (windows_.count == 1) hold_at_most(snapshots_);
-  SnapshotObserver observer(method, snapshots_, every_);
-  trial_.queries = nearest_particles(*model_, queried_positions(input_));
-  QueryRecord record(method, trial_.queries);
-
-  VectorView x("kiln::rom::unknown", method.row_size());
-  method.initial(x);
-  const std::unique_ptr<TimeScheme> scheme =
-      Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{method, span_.step});
-  scheme->start(x, 0.0);
-  ProgressObserver progress("full order", 0, *communicator_);
-  const int moments = std::min(span_.last_step, trial_moments);
-  for (int k = 1; k <= moments; ++k) {
-    trial_.steps.push_back(static_cast<int>(static_cast<long long>(span_.last_step) * k / moments));
-  }
-  trial_.states = Snapshots(method.row_size());
-  StateRecord states(method, trial_.steps, trial_.states);
-  std::vector<Observer*> observers{&observer, &record, &states};
-  if (!quiet_) observers.push_back(&progress);
-  const LoopTotals totals = run_time_loop(method, *scheme, x, span_, observers);
-
-  observer.finish(report);
-  trial_.query_values = record.values();
-  report.section("training")["full_order"] = {{"steps", totals.steps}, {"residuals", totals.residuals}};
 }
 
 std::vector<int> ProcedureTwo::window_ends(double error) const {
@@ -200,23 +183,28 @@ std::vector<Pod> ProcedureTwo::window_bases(const std::vector<int>& ends, RunRep
   nlohmann::json& facts = report.section("training")["basis"];
   facts = nlohmann::json::array();
   std::vector<Pod> bases;
-  std::size_t begin = 0;
-  const MatrixView states = snapshots_.matrix();
+  const Snapshots& snapshots = full_order_->snapshots();
   if (ends.size() == 1) {
-    bases.push_back(pod(snapshots_, basis_settings_, *communicator_));
+    bases.push_back(pod(snapshots, basis_settings_, *communicator_));
     facts.push_back(facts_of(bases.back()));
-    facts.back()["energy_discarded"] = snapshots_.discarded_energy();
+    facts.back()["energy_discarded"] = snapshots.discarded_energy();
     return bases;
   }
+  const MatrixView states = snapshots.matrix();
+  const std::size_t a_run = snapshots.count() / full_order_->learnt();
+  std::size_t begin = 0;
   for (const int step : ends) {
     const std::size_t end = (step + every_ - 1) / every_;
-    Snapshots increments(snapshots_.rows());
-    VectorView increment("kiln::rom::increment", snapshots_.rows());
-    for (std::size_t n = begin; n < end; ++n) {
-      for (std::size_t i = 0; i < increment.extent(0); ++i) {
-        increment(i) = begin == 0 ? states(i, n) : states(i, n) - states(i, begin - 1);
+    Snapshots increments(snapshots.rows());
+    VectorView increment("kiln::rom::increment", snapshots.rows());
+    for (std::size_t run = 0; run < full_order_->learnt(); ++run) {
+      const std::size_t first = run * a_run;
+      for (std::size_t n = first + begin; n < first + end; ++n) {
+        for (std::size_t i = 0; i < increment.extent(0); ++i) {
+          increment(i) = begin == 0 ? states(i, n) : states(i, n) - states(i, first + begin - 1);
+        }
+        increments.append(increment);
       }
-      increments.append(increment);
     }
     bases.push_back(pod(increments, basis_settings_, *communicator_));
     facts.push_back(facts_of(bases.back()));
@@ -234,7 +222,8 @@ std::unique_ptr<PetrovGalerkin> ProcedureTwo::lspg_method(const std::vector<int>
     windows.push_back({ends[w] * span_.step, first, size});
     first += size;
   }
-  const Halo halo(*model_);
+  const std::shared_ptr<Model>& model = full_order_->model();
+  const Halo halo(*model);
   const MatrixView modes("kiln::rom::modes at the sources", halo.source_size(), first);
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const auto columns = std::make_pair(windows[w].first, windows[w].first + windows[w].size);
@@ -242,29 +231,38 @@ std::unique_ptr<PetrovGalerkin> ProcedureTwo::lspg_method(const std::vector<int>
     MultiVector to(halo.sources(), MatrixView(Kokkos::subview(modes, Kokkos::ALL, columns)));
     halo.bring(from, to);
   }
-  return std::make_unique<PetrovGalerkin>(
-      full_size_parts(model_, windows, reference_, modes, [] { return std::make_unique<LspgTestBasis>(); }), newton_);
+  return std::make_unique<PetrovGalerkin>(full_size_parts(model, windows, full_order_->reference(), modes,
+                                                          [] { return std::make_unique<LspgTestBasis>(); }),
+                                          newton_);
 }
 
 WindowReduction ProcedureTwo::learn_window(double end, Pod basis, Snapshots& residuals) {
-  const int components = static_cast<int>(model_->fields().size());
-  Pod residual_basis = pod(residuals, residual_settings_, *communicator_);
+  const std::shared_ptr<Model>& model = full_order_->model();
+  const int components = static_cast<int>(model->fields().size());
+  // With fewer residual modes than coordinates, Gauss–Newton's equations have more than one solution.
+  PodSettings settings = residual_settings_;
+  settings.at_least = basis.truncation.rank;
+  Pod residual_basis = pod(residuals, settings, *communicator_);
   residuals.clear();
   const std::vector<GlobalIndex> sampled = Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
-                                               ->sample(*model_->rows(), residual_basis.modes, components);
-  GappyOperator gappy = gappy_operator(sampled_rows(*model_->rows(), residual_basis.modes, sampled, components),
+                                               ->sample(*model->rows(), residual_basis.modes, components);
+  GappyOperator gappy = gappy_operator(sampled_rows(*model->rows(), residual_basis.modes, sampled, components),
                                        block_.sublist("sampling").name());
   residual_basis.modes = {};
-  return {end, std::move(basis), std::move(residual_basis), gappy, sampled, sampled_or_masked(model_, sampled)};
+  return {end, std::move(basis), std::move(residual_basis), gappy, sampled, sampled_or_masked(model, sampled)};
 }
 
 std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>& ends, std::vector<Pod> bases,
                                                          PetrovGalerkin& lspg, RunReport& report) {
-  VectorView x("kiln::rom::unknown", lspg.coordinates()->getMyGlobalIndices().extent(0));
-  lspg.initial(x);
-  const std::unique_ptr<TimeScheme> scheme =
-      Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), TimeScheme::Context{lspg, span_.step});
-  scheme->start(x, 0.0);
+  std::vector<Marcher> marchers;
+  for (std::size_t point = 0; point < full_order_->learnt(); ++point) {
+    full_order_->go_to(point);
+    marchers.push_back({VectorView("kiln::rom::unknown", local_size(*lspg.coordinates())),
+                        Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"),
+                                                     TimeScheme::Context{lspg, span_.step})});
+    lspg.initial(marchers.back().x);
+    marchers.back().scheme->start(marchers.back().x, 0.0);
+  }
   Snapshots residuals(lspg.row_size());
   hold_at_most(residuals);
   lspg.observe_residuals([&residuals](ConstVectorView residual) { residuals.append(residual); });
@@ -277,14 +275,21 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
   std::vector<WindowReduction> windows;
   int first_step = 0;
   for (std::size_t w = 0; w < ends.size(); ++w) {
-    const std::string label = ends.size() == 1 ? "LSPG" : fmt::format("LSPG, window {}/{}", w + 1, ends.size());
-    ProgressObserver progress(label, first_step, *communicator_);
-    std::vector<Observer*> observers;
-    if (!quiet_) observers.push_back(&progress);
-    const LoopTotals part = run_time_loop(lspg, *scheme, x, {span_.step, first_step, ends[w]}, observers);
-    totals.steps += part.steps;
-    totals.residuals += part.residuals;
-    totals.capped_steps += part.capped_steps;
+    for (std::size_t point = 0; point < marchers.size(); ++point) {
+      std::string label = "LSPG";
+      if (marchers.size() > 1) label += fmt::format(", point {}/{}", point + 1, marchers.size());
+      if (ends.size() > 1) label += fmt::format(", window {}/{}", w + 1, ends.size());
+      ProgressObserver progress(label, first_step, *communicator_);
+      std::vector<Observer*> observers;
+      if (!quiet_) observers.push_back(&progress);
+      full_order_->go_to(point);
+      lspg.projection(w).forget_jacobian();
+      const LoopTotals part =
+          run_time_loop(lspg, *marchers[point].scheme, marchers[point].x, {span_.step, first_step, ends[w]}, observers);
+      totals.steps += part.steps;
+      totals.residuals += part.residuals;
+      totals.capped_steps += part.capped_steps;
+    }
     taken += residuals.appended();
     discarded = std::max(discarded, residuals.discarded_energy());
     windows.push_back(learn_window(ends[w] * span_.step, std::move(bases[w]), residuals));
@@ -305,6 +310,7 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
     first_step = ends[w];
   }
   lspg.observe_residuals({});
+  full_order_->go_home();
   facts["lspg"] = {{"steps", totals.steps},
                    {"residuals", totals.residuals},
                    {"capped_steps", totals.capped_steps},
@@ -320,7 +326,7 @@ TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunRepo
     ends = window_ends(error);
     bases = window_bases(ends, report);
   });
-  if (!windows_.error) snapshots_.clear();
+  if (!windows_.error) full_order_->snapshots().clear();
   std::unique_ptr<PetrovGalerkin> lspg;
   std::vector<WindowReduction> windows;
   stage("LSPG run, POD of its residuals, sampling", report, [&] {
@@ -328,14 +334,45 @@ TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunRepo
     windows = learn_windows(ends, std::move(bases), *lspg, report);
   });
   stage("reduction file", report, [&] {
-    const VectorView rows = Kokkos::subview(reference_, std::make_pair(0, lspg->row_size()));
-    write_reduction(path, {input_, *model_, rows, std::move(windows), trial_.queries});
+    const VectorView rows = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg->row_size()));
+    write_reduction(path, {input_, *full_order_->model(), rows, std::move(windows), full_order_->trial(0).queries});
   });
   TrialErrors errors;
-  stage("trial run", report, [&] { errors = trial_run(input_, path, span_, trial_, *lspg, communicator_); });
+  stage("trial run", report, [&] { errors = try_all(path, *lspg, report); });
   report.section("training")["time_windows"] = ends.size();
-  report.section("training")["trial"] = errors.facts();
   return errors;
+}
+
+TrialErrors ProcedureTwo::try_all(const std::string& path, PetrovGalerkin& lspg, RunReport& report) const {
+  nlohmann::json points = nlohmann::json::array();
+  TrialErrors worst;
+  for (std::size_t point = 0; point < full_order_->points(); ++point) {
+    const TrialErrors errors = trial_run(input_, path, span_, full_order_->trial(point), lspg, communicator_);
+    worst = worst.worse(errors);
+    points.push_back(errors.facts());
+    points.back()["at"] = full_order_->values(point);
+    points.back()["learnt"] = point < full_order_->learnt();
+  }
+  nlohmann::json& facts = report.section("training")["trial"];
+  facts = worst.facts();
+  if (full_order_->points() > 1) facts["points"] = points;
+  return worst;
+}
+
+void ProcedureTwo::run_full_order(RunReport& report) {
+  const Teuchos::ParameterList& snapshots = block_.sublist("snapshots");
+  FullOrderRuns::Settings settings{span_, every_, std::nullopt, quiet_};
+  if (windows_.count == 1 && snapshots.isParameter("hold")) settings.hold = snapshots.get<int>("hold");
+  full_order_ = std::make_unique<FullOrderRuns>(input_, block_, settings, communicator_);
+  LoopTotals totals;
+  for (const LoopTotals& run : full_order_->totals()) {
+    totals.steps += run.steps;
+    totals.residuals += run.residuals;
+  }
+  nlohmann::json& facts = report.section("training");
+  facts["full_order"] = {{"runs", full_order_->points()}, {"steps", totals.steps}, {"residuals", totals.residuals}};
+  facts["state_snapshots"] = full_order_->snapshots().appended();
+  facts["queried"] = full_order_->trial(0).queries.size();
 }
 
 void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
@@ -343,16 +380,15 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   facts["stages"] = nlohmann::json::array();
   facts["warnings"] = nlohmann::json::array();
   stage("full-order run", report, [&] { run_full_order(report); });
-  facts["queried"] = trial_.queries.size();
 
   AtomicPath path(file, communicator_);
   double aim = windows_.error.value_or(0.0);
-  if (windows_.error) costs_ = std::make_unique<WindowCosts>(snapshots_, *communicator_);
+  if (windows_.error) costs_ = std::make_unique<WindowCosts>(full_order_->snapshots(), *communicator_);
   TrialErrors errors = attempt(path.temporary(), aim, report);
   if (windows_.error) {
     const double wanted = *windows_.error;
     const auto reached = [this](const TrialErrors& trial) {
-      return trial_.queries.empty() ? trial.field : trial.worst_query;
+      return full_order_->trial(0).queries.empty() ? trial.field : trial.worst_query;
     };
     for (int k = 1; k < most_attempts && (errors.diverged || reached(errors) > wanted); ++k) {
       aim *= errors.diverged ? 0.3 : std::clamp(0.7 * wanted / reached(errors), 0.1, 0.7);
@@ -372,7 +408,7 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   }
   {
     hdf5::File written = hdf5::File::modify(path.temporary(), communicator_);
-    written.attribute("trial", errors.facts().dump());
+    written.attribute("trial", facts["trial"].dump());
     written.flush();
   }
   path.commit();

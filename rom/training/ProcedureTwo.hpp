@@ -10,20 +10,21 @@
 #include "framework/time/NewtonSettings.hpp"
 #include "rom/files/Reduction.hpp"
 #include "rom/pod/Pod.hpp"
+#include "rom/training/FullOrderRuns.hpp"
 #include "rom/training/TimeWindows.hpp"
-#include "rom/training/TrialRun.hpp"
 
 namespace kiln {
 
 /// Training by procedure II of GNAT (Carlberg et al. 2013; §3.3.1 of the report), in each of one or more time windows:
 ///
-///   1. full-order run; snapshots u − u0
+///   1. full-order runs, one or at each point of `train_on`; snapshots u − u0
 ///   2. the windows, and in each the POD of u_n − u_begin: its trial basis Φ
-///   3. LSPG without hyper-reduction over the same steps; the residual of every iteration is a snapshot. Window by
-///      window, while it stands there: the residuals' POD Φ_r, for residual and Jacobian alike; sampling of particles;
-///      A = [PΦ_r]⁺ and the sample mesh
+///   3. LSPG without hyper-reduction over the same steps, at each of these points; the residual of every iteration is a
+///      snapshot. Window by window, while it stands there: the residuals' POD Φ_r, for residual and Jacobian alike;
+///      sampling of particles; A = [PΦ_r]⁺ and the sample mesh
 ///   4. the reduction file
-///   5. a trial run of what is in the file; its errors against the full-order run go into report and file
+///   5. a trial run of what is in the file at each of these points and those of `try_on`; its errors against the
+///      full-order runs go into report and file
 ///
 /// Where windows are asked for that hold an error, 2 to 5 are repeated with shorter windows until the trial run says
 /// so.
@@ -47,6 +48,8 @@ class ProcedureTwo : public Trainer {
   std::unique_ptr<PetrovGalerkin> lspg_method(const std::vector<int>& ends, const std::vector<Pod>& bases) const;
   /// One reduction, tried: the file is at `path` when it returns.
   TrialErrors attempt(const std::string& path, double error, RunReport& report);
+  /// The worst over all points; each point's own errors go into the report.
+  TrialErrors try_all(const std::string& path, PetrovGalerkin& lspg, RunReport& report) const;
   /// Times a stage, shows it on rank 0, and puts its seconds into the report.
   void stage(const std::string& name, RunReport& report, const std::function<void()>& work);
   /// Limits snapshots as the input asks for.
@@ -61,12 +64,9 @@ class ProcedureTwo : public Trainer {
   NewtonSettings newton_;
   PodSettings basis_settings_, residual_settings_;
   WindowSettings windows_;
-  int every_;  ///< steps between two snapshots
-  std::shared_ptr<Model> model_;
-  VectorView reference_;  ///< u_0 at the sources
-  Snapshots snapshots_;
-  std::unique_ptr<WindowCosts> costs_;  ///< where windows hold an error
-  TrialReference trial_;
+  int every_;                                  ///< steps between two snapshots
+  std::unique_ptr<FullOrderRuns> full_order_;  ///< made by train()
+  std::unique_ptr<WindowCosts> costs_;         ///< where windows hold an error
 };
 
 }  // namespace kiln

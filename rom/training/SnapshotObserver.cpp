@@ -3,8 +3,6 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
-#include "framework/report/RunReport.hpp"
-
 namespace kiln {
 
 SnapshotObserver::SnapshotObserver(Method& method, Snapshots& snapshots, int every)
@@ -30,10 +28,6 @@ StateRecord::StateRecord(Method& method, const std::vector<int>& steps, Snapshot
 
 void StateRecord::observe(const Moment& moment) {
   if (std::binary_search(steps_.begin(), steps_.end(), moment.step)) every_.observe(moment);
-}
-
-void SnapshotObserver::finish(RunReport& report) {
-  report.section("training")["state_snapshots"] = snapshots_.appended();
 }
 
 }  // namespace kiln

@@ -13,7 +13,7 @@ class SnapshotObserver : public Observer {
 
   void begin() override {}
   void observe(const Moment& moment) override;
-  void finish(RunReport& report) override;
+  void finish(RunReport&) override {}
 
  private:
   Method& method_;

@@ -107,6 +107,15 @@ nlohmann::json TrialErrors::facts() const {
           {"capped_steps", capped_steps}};
 }
 
+TrialErrors TrialErrors::worse(const TrialErrors& other) const {
+  return {std::max(worst_query, other.worst_query),
+          std::max(worst_query_of_rise, other.worst_query_of_rise),
+          std::max(field, other.field),
+          std::max(iterations_per_step, other.iterations_per_step),
+          std::max(capped_steps, other.capped_steps),
+          diverged || other.diverged};
+}
+
 TrialErrors trial_run(const Teuchos::ParameterList& input, const std::filesystem::path& file, const TimeSpan& span,
                       const TrialReference& reference, PetrovGalerkin& full_size,
                       const Teuchos::RCP<const Communicator>& communicator) {
@@ -116,6 +125,7 @@ TrialErrors trial_run(const Teuchos::ParameterList& input, const std::filesystem
   online.sublist("method").set<std::string>("factors", "kept");
   const std::unique_ptr<Method> method =
       Registry<Method>::create(online.sublist("method"), Method::Context{online, communicator});
+  if (reference.point.count() > 0) reference.point.set(0, method->parameters());
   const std::unique_ptr<TimeScheme> scheme =
       Registry<TimeScheme>::create(online.sublist("time").sublist("scheme"), TimeScheme::Context{*method, span.step});
   VectorView x("kiln::rom::unknown", method->coordinates()->getMyGlobalIndices().extent(0));

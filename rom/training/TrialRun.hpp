@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/driver/TimeLoop.hpp"
+#include "framework/model/ParameterPoints.hpp"
 #include "framework/observers/Observer.hpp"
 #include "rom/pod/Snapshots.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
@@ -43,10 +44,13 @@ struct TrialErrors {
   bool diverged = false;
 
   nlohmann::json facts() const;
+  /// Each error the larger of both.
+  TrialErrors worse(const TrialErrors& other) const;
 };
 
 /// What a trial is measured against.
 struct TrialReference {
+  ParameterPoints point;  ///< of the live parameters; none: the input's own values
   std::vector<GlobalIndex> queries;
   std::vector<double> query_values;  ///< QueryRecord::values() of the full-order run
   std::vector<int> steps;            ///< at which `states` were taken

@@ -235,6 +235,14 @@ Teuchos::ParameterList input_of(const Case& values) {
   reduction.sublist("snapshots").set("every", 1);
   if (values.windows > 0) reduction.sublist("windows").set("count", values.windows);
   if (values.window_error > 0.0) reduction.sublist("windows").set("error", values.window_error);
+  for (const auto& [key, powers] : {std::pair{"train_on", values.train_on}, std::pair{"try_on", values.try_on}}) {
+    if (powers.empty()) continue;
+    Teuchos::Array<std::string> texts;
+    for (const double power : powers) texts.push_back(std::to_string(power));
+    reduction.sublist(key).setName(std::string("reduction.") + key);
+    reduction.sublist(key).set("grid", false);
+    reduction.sublist(key).sublist("points").set("power", texts);
+  }
   Teuchos::ParameterList& point = reduction.sublist("queries").sublist("0");
   point.set("position", Teuchos::Array<double>(Teuchos::tuple(1.0, 0.0, 0.0)));
   input.sublist("output").set("directory", values.folder);

@@ -79,8 +79,9 @@ struct Case {
   std::string jacobian = "matrix free";
   int basis_rank = 10, residual_rank = 12, samples = 24;
   std::string algorithm = "gram";
-  int windows = 0;            ///< 0: the block is left out
-  double window_error = 0.0;  ///< likewise
+  int windows = 0;                       ///< 0: the block is left out
+  double window_error = 0.0;             ///< likewise
+  std::vector<double> train_on, try_on;  ///< powers; empty: the block is left out
   std::string folder = ".";
 };
 

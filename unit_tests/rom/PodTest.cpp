@@ -258,6 +258,12 @@ TEST(Truncation, FollowsItsRules) {
   s.energy.reset();
   s.rank = 2;
   EXPECT_NEAR(truncate(sigma, s).energy, 13.0 / 14.0, 1e-15);
+  s.at_least = 3;
+  EXPECT_EQ(truncate(sigma, s).rank, 2);  // asked for by number
+  s.rank.reset();
+  EXPECT_EQ(rank(0.5, Of::squared_singular_values), 3);
+  s.at_least = 9;
+  EXPECT_EQ(rank(0.5, Of::squared_singular_values), 4);
 }
 
 TEST(Tsqr, ReproducesTheMatrix) {

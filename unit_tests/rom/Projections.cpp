@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/driver/TimeLoop.hpp"
+#include "framework/method/Trainer.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/GappyOperator.hpp"
 
@@ -96,6 +97,21 @@ std::vector<double> gathered_state(const Method& method, ConstVectorView x) {
   }
   dense::sum_over_ranks(*map.getComm(), all.data(), all.size());
   return all;
+}
+
+RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator) {
+  const Teuchos::ParameterList input = input_of(values);
+  RunReport report;
+  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, communicator, true})
+      ->train(values.folder + "/reduction.h5", report);
+  return report;
+}
+
+std::unique_ptr<Method> method_of(Case values, const std::string& type,
+                                  const Teuchos::RCP<const Communicator>& communicator) {
+  values.method = type;
+  const Teuchos::ParameterList input = input_of(values);
+  return Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
 }
 
 std::vector<double> march(Method& method, const Case& values) {

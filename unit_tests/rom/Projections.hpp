@@ -4,6 +4,7 @@
 
 #include "Chain.hpp"
 #include "framework/method/FullOrder.hpp"
+#include "framework/report/RunReport.hpp"
 #include "framework/time/TimeScheme.hpp"
 #include "rom/basis/TimeWindow.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
@@ -31,6 +32,12 @@ std::unique_ptr<PetrovGalerkin> projection(const std::shared_ptr<Model>& model, 
                                            const std::function<std::unique_ptr<TestBasis>()>& test);
 std::unique_ptr<PetrovGalerkin> gnat_projection(const std::shared_ptr<Model>& model, const Case& values, int modes,
                                                 int residual_modes);
+
+/// Trains as the input of a case asks for: `reduction.h5` in its folder.
+RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator);
+/// A registered method on the case.
+std::unique_ptr<Method> method_of(Case values, const std::string& type,
+                                  const Teuchos::RCP<const Communicator>& communicator);
 
 /// Marches through the case's steps and returns the state of all the method's particles at the end, by id, on every
 /// rank.

@@ -7,7 +7,6 @@
 
 #include "Projections.hpp"
 #include "framework/driver/TimeLoop.hpp"
-#include "framework/method/Trainer.hpp"
 #include "framework/model/PointRates.hpp"
 #include "framework/queries/PointBlock.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
@@ -39,10 +38,7 @@ Case trained(const TestFolder& folder, const char* scheme = "backward euler") {
   Case values = chain(folder / ("rank" + std::to_string(test::world()->getRank())));
   values.scheme = scheme;
   std::filesystem::create_directory(values.folder);
-  const Teuchos::ParameterList input = test::input_of(values);
-  RunReport report;
-  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, self(), true})
-      ->train(values.folder + "/reduction.h5", report);
+  test::train(values, self());
   return values;
 }
 

@@ -80,6 +80,12 @@ TEST(TrainingInput, NamesItsMistakes) {
       "  basis: {energy: 99.9}\n"
       "  residual_basis: {rank: 3}\n");
   EXPECT_NE(plain.find("reduction.basis.energy"), std::string::npos) << plain;
+  const std::string few = message(
+      "reduction:\n"
+      "  type: procedure ii\n"
+      "  basis: {rank: 9}\n"
+      "  residual_basis: {rank: 8}\n");
+  EXPECT_NE(few.find("8 residual modes do not determine the coordinates of 9 basis vectors"), std::string::npos) << few;
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 
 #include "Projections.hpp"
 #include "framework/files/Hdf5.hpp"
-#include "framework/method/Trainer.hpp"
 #include "rom/files/ReductionFile.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 
@@ -17,7 +16,9 @@ namespace {
 using test::Case;
 using test::largest_difference;
 using test::march;
+using test::method_of;
 using test::self;
+using test::train;
 using test::world;
 
 /// Diagonal Jacobians keep the full-order run, which is not under test here, free of Krylov iterations.
@@ -27,21 +28,6 @@ Case training_case(const std::string& folder) {
   values.jacobian = "diagonal";
   values.iterations = 40;
   return values;
-}
-
-RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator) {
-  const Teuchos::ParameterList input = test::input_of(values);
-  RunReport report;
-  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, communicator})
-      ->train(values.folder + "/reduction.h5", report);
-  return report;
-}
-
-std::unique_ptr<Method> method_of(Case values, const std::string& type,
-                                  const Teuchos::RCP<const Communicator>& communicator) {
-  values.method = type;
-  const Teuchos::ParameterList input = test::input_of(values);
-  return Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
 }
 
 std::vector<double> run(const Case& values, const std::string& type,

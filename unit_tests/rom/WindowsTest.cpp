@@ -8,7 +8,6 @@
 #include "Projections.hpp"
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
-#include "framework/method/Trainer.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/training/TimeWindows.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
@@ -21,6 +20,7 @@ using test::largest_difference;
 using test::march;
 using test::model_of;
 using test::self;
+using test::train;
 using test::world;
 
 /// A reduced method of several windows, each on all cosines: nothing is left out, so that only the hand-over can go
@@ -141,18 +141,9 @@ Case training_case(const std::string& folder) {
   return values;
 }
 
-RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator) {
-  const Teuchos::ParameterList input = test::input_of(values);
-  RunReport report;
-  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, communicator, true})
-      ->train(values.folder + "/reduction.h5", report);
-  return report;
-}
-
-std::vector<double> run(Case values, const std::string& type, const Teuchos::RCP<const Communicator>& communicator) {
-  values.method = type;
-  const Teuchos::ParameterList input = test::input_of(values);
-  return march(*Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator}), values);
+std::vector<double> run(const Case& values, const std::string& type,
+                        const Teuchos::RCP<const Communicator>& communicator) {
+  return march(*test::method_of(values, type, communicator), values);
 }
 
 TEST(WindowTraining, OfAsManyModesIsMoreAccurateInMoreWindows) {

@@ -25,11 +25,11 @@ class QueryPoints : public testing::Test {
   ParameterPoints table(const std::string& text) {
     std::ofstream(folder_ / "points.csv") << text;
     list_.set("file", folder_ / "points.csv");
-    return query_points(list_, parameters_);
+    return points_of(list_, parameters_);
   }
   std::vector<Problem> problems() {
     try {
-      query_points(list_, parameters_);
+      points_of(list_, parameters_);
     } catch (const InputError& error) {
       return error.problems();
     }
@@ -54,7 +54,7 @@ using Values = std::vector<std::vector<double>>;
 
 TEST_F(QueryPoints, AreTheRowsOfListsInSiUnits) {
   points({{"beam.velocity.x", {"0.5 m/s", "450 mm/s"}}, {"beam.power", {"36 W", "0.04 kW"}}, {"share", {"1", "20 %"}}});
-  const ParameterPoints points = query_points(list_, parameters_);
+  const ParameterPoints points = points_of(list_, parameters_);
   EXPECT_EQ(points.names, (std::vector<std::string>{"beam.velocity.x", "beam.power", "share"}));
   EXPECT_EQ(points.values, (Values{{0.5, 36.0, 1.0}, {0.45, 40.0, 0.2}}));
   points.set(1, parameters_);
@@ -65,7 +65,7 @@ TEST_F(QueryPoints, AreTheRowsOfListsInSiUnits) {
 TEST_F(QueryPoints, OfAGridAreAllCombinationsTheLastFastest) {
   points({{"beam.power", {"1", "2"}}, {"share", {"3", "4", "5"}}});
   list_.set("grid", true);
-  EXPECT_EQ(query_points(list_, parameters_).values, (Values{{1, 3}, {1, 4}, {1, 5}, {2, 3}, {2, 4}, {2, 5}}));
+  EXPECT_EQ(points_of(list_, parameters_).values, (Values{{1, 3}, {1, 4}, {1, 5}, {2, 3}, {2, 4}, {2, 5}}));
 }
 
 TEST_F(QueryPoints, AreTheRowsOfATable) {

@@ -1,0 +1,122 @@
+#include "rom/training/FullOrderRuns.hpp"
+
+#include <fmt/format.h>
+
+#include <Tpetra_Map.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "framework/method/FullOrder.hpp"
+#include "framework/observers/ProgressObserver.hpp"
+#include "framework/queries/QueryPoints.hpp"
+#include "framework/registry/Registry.hpp"
+#include "rom/training/Queries.hpp"
+#include "rom/training/SnapshotObserver.hpp"
+
+namespace kiln {
+namespace {
+
+/// Moments at which a trial run's whole field is compared with the full-order one.
+constexpr int trial_moments = 20;
+
+/// The input's own values with those of one of `points` in their place.
+std::vector<double> values_with(const ParameterPoints& own, const ParameterPoints& points, std::size_t point) {
+  std::vector<double> values = own.values.front();
+  for (std::size_t k = 0; k < points.names.size(); ++k) {
+    const auto place = std::find(own.names.begin(), own.names.end(), points.names[k]) - own.names.begin();
+    values[place] = points.values[point][k];
+  }
+  return values;
+}
+
+}  // namespace
+
+void FullOrderRuns::specify(Specification& reduction) {
+  reduction
+      .section("train_on",
+               "points of the model's live parameters to learn from, a full-order run each; left out: the input's own",
+               points_specification())
+      .optional();
+  reduction
+      .section("try_on",
+               "further points, on which the reduction is only tried: a full-order run each, to state the error there",
+               points_specification())
+      .optional();
+}
+
+void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
+  for (const Parameter& parameter : model_->parameters().list()) own_.names.push_back(parameter.name);
+  own_.values.emplace_back();
+  for (const Parameter& parameter : model_->parameters().list()) own_.values.front().push_back(*parameter.value);
+  points_.names = own_.names;
+  for (const char* key : {"train_on", "try_on"}) {
+    if (block.isSublist(key)) {
+      const ParameterPoints listed = points_of(block.sublist(key), model_->parameters());
+      for (std::size_t point = 0; point < listed.count(); ++point) {
+        points_.values.push_back(values_with(own_, listed, point));
+      }
+      for (const std::string& name : listed.names) {
+        if (std::find(varied_.begin(), varied_.end(), name) == varied_.end()) varied_.push_back(name);
+      }
+    } else if (points_.count() == 0) {
+      points_.values.push_back(own_.values.front());
+    }
+    if (key == std::string("train_on")) learnt_ = points_.count();
+  }
+}
+
+FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
+                             const Settings& settings, const Teuchos::RCP<const Communicator>& communicator) {
+  const TimeSpan& span = settings.span;
+  for (std::size_t point = 0; point == 0 || point < points_.count(); ++point) {
+    // A method of its own for each run: its frozen Jacobian would tell of the runs before.
+    FullOrder method(block, Method::Context{input, communicator});
+    if (point == 0) {
+      model_ = method.model();
+      collect_points(block);
+      reference_ = VectorView("kiln::rom::initial state", local_size(*model_->sources()) * model_->fields().size());
+      model_->initial_state(reference_);
+      snapshots_ = Snapshots(method.row_size());
+      if (settings.hold) snapshots_.limit(*settings.hold, communicator);
+    }
+    points_.set(point, method.parameters());
+
+    TrialReference trial{{}, nearest_particles(*model_, queried_positions(input)), {}, {}, Snapshots(0)};
+    if (!varied_.empty()) trial.point = points_.part(point, 1);
+    const int moments = std::min(span.last_step, trial_moments);
+    for (int k = 1; k <= moments; ++k) {
+      trial.steps.push_back(static_cast<int>(static_cast<long long>(span.last_step) * k / moments));
+    }
+    trial.states = Snapshots(method.row_size());
+    QueryRecord record(method, trial.queries);
+    StateRecord states(method, trial.steps, trial.states);
+    SnapshotObserver every(method, snapshots_, settings.every);
+    const std::string label = points_.count() == 1 ? std::string("full order")
+                                                   : fmt::format("full order, point {}/{}", point + 1, points_.count());
+    ProgressObserver progress(label, 0, *communicator);
+    std::vector<Observer*> observers{&record, &states};
+    if (point < learnt_) observers.push_back(&every);
+    if (!settings.quiet) observers.push_back(&progress);
+
+    VectorView x("kiln::rom::unknown", method.row_size());
+    method.initial(x);
+    const std::unique_ptr<TimeScheme> scheme =
+        Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"), TimeScheme::Context{method, span.step});
+    scheme->start(x, 0.0);
+    totals_.push_back(run_time_loop(method, *scheme, x, span, observers));
+    trial.query_values = record.values();
+    trials_.push_back(std::move(trial));
+  }
+  go_home();
+}
+
+nlohmann::json FullOrderRuns::values(std::size_t point) const {
+  nlohmann::json values = nlohmann::json::object();
+  for (const std::string& name : varied_) {
+    const auto place = std::find(points_.names.begin(), points_.names.end(), name) - points_.names.begin();
+    values[name] = points_.values[point][place];
+  }
+  return values;
+}
+
+}  // namespace kiln

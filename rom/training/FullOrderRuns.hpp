@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/driver/TimeLoop.hpp"
+#include "framework/model/Model.hpp"
+#include "framework/registry/Specification.hpp"
+#include "rom/pod/Snapshots.hpp"
+#include "rom/training/TrialRun.hpp"
+
+namespace kiln {
+
+/// The full-order runs of a training, a run for each point of the model's live parameters: those the reduction learns
+/// from and those it is only tried on. Without any, one run with the input's own values.
+class FullOrderRuns {
+ public:
+  struct Settings {
+    TimeSpan span;
+    int every;                ///< steps between two snapshots
+    std::optional<int> hold;  ///< most snapshots held in memory
+    bool quiet;               ///< no progress bar
+  };
+  /// Adds the keys `train_on` and `try_on` to the block `reduction`.
+  static void specify(Specification& reduction);
+
+  /// Runs them all. Throws InputError for points that are none of the model's. Collective.
+  FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block, const Settings& settings,
+                const Teuchos::RCP<const Communicator>& communicator);
+
+  const std::shared_ptr<Model>& model() const { return model_; }
+  /// u_0 at the model's sources.
+  const VectorView& reference() const { return reference_; }
+  /// How many of the points the reduction learns from, at least one; they come first.
+  std::size_t learnt() const { return learnt_; }
+  /// Gives the model's live parameters their values at a point.
+  void go_to(std::size_t point) const { points_.set(point, model_->parameters()); }
+  /// Gives them the input's own values.
+  void go_home() const { own_.set(0, model_->parameters()); }
+
+  /// u − u_0 of the points learnt from, one run after the other.
+  Snapshots& snapshots() { return snapshots_; }
+  /// What a trial at a point is measured against.
+  const TrialReference& trial(std::size_t point) const { return trials_[point]; }
+  std::size_t points() const { return trials_.size(); }
+  /// The values of the parameters that vary, by name; empty where none does.
+  nlohmann::json values(std::size_t point) const;
+  /// Steps and evaluations of each run.
+  const std::vector<LoopTotals>& totals() const { return totals_; }
+
+ private:
+  void collect_points(const Teuchos::ParameterList& block);
+
+  ParameterPoints points_;           ///< all live parameters at each point
+  ParameterPoints own_;              ///< the same of the input
+  std::vector<std::string> varied_;  ///< names of the parameters that points list
+  std::size_t learnt_ = 1;
+  std::shared_ptr<Model> model_;
+  VectorView reference_;
+  Snapshots snapshots_{0};
+  std::vector<TrialReference> trials_;
+  std::vector<LoopTotals> totals_;
+};
+
+}  // namespace kiln
