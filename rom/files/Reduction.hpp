@@ -2,10 +2,12 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/model/Model.hpp"
+#include "rom/files/ClusteredMesh.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/sampling/GappyOperator.hpp"
 
@@ -19,6 +21,7 @@ struct WindowReduction {
   GappyOperator gappy_operator;
   std::vector<GlobalIndex> sampled;  ///< ids, ascending
   std::unique_ptr<Model> sample;     ///< the model on the sampled particles alone
+  std::optional<ClusteredMesh> clustered = {};
 };
 
 /// All that training learns, before it is written. Row-space arrays stand on the full model's rows.
@@ -33,7 +36,8 @@ struct Reduction {
 /// Writes a reduction file. It holds everything an online run needs:
 ///
 ///     attributes      format, format_version, model_type, model_input (checked, as YAML), model_hash, provenance,
-///                     components, particles; trial (JSON), the errors of the training's trial run
+///                     components, particles; trial (JSON), the errors of the training's trial run;
+///                     trial_clustered (JSON), those of the clustered mesh's, where there is one
 ///     /parameters     live parameters of the model at training, one attribute each
 ///     /time           step in s and scheme (as YAML) of the training
 ///     /reference      u_ref (N)

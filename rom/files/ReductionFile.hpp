@@ -51,6 +51,10 @@ class ReductionFile {
   SampleMesh sample_mesh(std::size_t window) const;
   /// The group Model::save_sample wrote.
   hdf5::Group sample_model(std::size_t window) const;
+  /// Whether the training clustered the sources of every window.
+  bool clustered() const;
+  /// The group ClusteredMesh::write wrote.
+  hdf5::Group clusters(std::size_t window) const;
   /// The sources of all sample meshes and the queried particles.
   ParticleTable held_particles() const;
   std::vector<GlobalIndex> queries() const;
@@ -65,9 +69,9 @@ class ReductionFile {
   std::vector<TimeWindow> windows_;
 };
 
-/// The rows of a table at the particles of a map, and of its modes the first `columns`. Throws FileError naming `file`
-/// for a particle it lacks. Collective over the map's ranks.
-ReductionFile::Rows rows_at(const Map& particles, const ParticleTable& table, std::size_t columns,
+/// The rows of tables at the particles of a map, each in the first table that has it, and of the modes the first
+/// `columns`. Throws FileError naming `file` for a particle they lack. Collective over the map's ranks.
+ReductionFile::Rows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
                             const std::string& file);
 
 }  // namespace kiln

@@ -18,10 +18,13 @@
 #include "framework/model/MaskedModel.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
+#include "rom/clustering/SourceClustering.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/Sampling.hpp"
+#include "rom/training/LearnClusters.hpp"
 #include "rom/training/Queries.hpp"
 #include "rom/training/SnapshotObserver.hpp"
+#include "rom/training/UnknownRecord.hpp"
 
 namespace kiln {
 namespace {
@@ -91,6 +94,9 @@ Specification ProcedureTwo::specification() {
   s.section("residual_basis", "basis of a window's residual, from an LSPG run without hyper-reduction",
             PodSettings::specification());
   s.component<Sampling>("sampling", "which particles the hyper-reduced run evaluates").defaults_to("greedy");
+  s.component<SourceClustering>("clustering",
+                                "how each sampled particle's sources become few, for ptrom; left out: not at all")
+      .optional();
   s.section("snapshots", "of the full-order state", snapshot_specification());
   s.sections("queries",
              "further positions whose state online runs can tell; probes of the output are always among them",
@@ -271,6 +277,7 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
 
   nlohmann::json& facts = report.section("training");
   facts["residual_basis"] = facts["sample_meshes"] = nlohmann::json::array();
+  if (clusters()) facts["clusters"] = nlohmann::json::array();
   LoopTotals totals;
   std::size_t taken = 0;
   double discarded = 0.0;
@@ -279,8 +286,12 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
   for (std::size_t w = 0; w < ends.size(); ++w) {
     const std::string label = ends.size() == 1 ? "LSPG" : fmt::format("LSPG, window {}/{}", w + 1, ends.size());
     ProgressObserver progress(label, first_step, *communicator_);
-    std::vector<Observer*> observers;
+    const std::vector<int> moments = clusters() ? clustering_steps(first_step, ends[w]) : std::vector<int>();
+    UnknownRecord record(moments);
+    std::vector<Observer*> observers{&record};
     if (!quiet_) observers.push_back(&progress);
+    VectorView beginning("kiln::rom::unknown", x.extent(0));
+    Kokkos::deep_copy(beginning, x);
     const LoopTotals part = run_time_loop(lspg, *scheme, x, {span_.step, first_step, ends[w]}, observers);
     totals.steps += part.steps;
     totals.residuals += part.residuals;
@@ -288,6 +299,16 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
     taken += residuals.appended();
     discarded = std::max(discarded, residuals.discarded_energy());
     windows.push_back(learn_window(ends[w] * span_.step, std::move(bases[w]), residuals));
+    if (clusters()) {
+      std::vector<VectorView> unknowns{beginning};
+      unknowns.insert(unknowns.end(), record.unknowns().begin(), record.unknowns().end());
+      const VectorView reference = Kokkos::subview(reference_, std::make_pair(0, lspg.row_size()));
+      ClusteredMesh mesh = learn_clusters(block_.sublist("clustering"), *model_, reference, windows, unknowns);
+      facts["clusters"].push_back({{"clusters", mesh.clusters.clusters()},
+                                   {"pairs", mesh.clusters.row_clusters.size()},
+                                   {"unclustered_pairs", mesh.unclustered_pairs}});
+      windows.back().clustered = std::move(mesh);
+    }
     const WindowReduction& window = windows.back();
     facts["residual_basis"].push_back(facts_of(window.residual_basis));
     facts["sample_meshes"].push_back({{"end_s", window.end},
@@ -313,7 +334,7 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
   return windows;
 }
 
-TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunReport& report) {
+ProcedureTwo::Trials ProcedureTwo::attempt(const std::string& path, double error, RunReport& report) {
   std::vector<int> ends;
   std::vector<Pod> bases;
   stage("POD of the state", report, [&] {
@@ -331,11 +352,25 @@ TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunRepo
     const VectorView rows = Kokkos::subview(reference_, std::make_pair(0, lspg->row_size()));
     write_reduction(path, {input_, *model_, rows, std::move(windows), trial_.queries});
   });
-  TrialErrors errors;
-  stage("trial run", report, [&] { errors = trial_run(input_, path, span_, trial_, *lspg, communicator_); });
+  Trials trials;
+  stage("trial run", report, [&] {
+    trials.gnat = trial_run("gnat", input_, path, span_, trial_, *lspg, communicator_);
+    if (clusters()) trials.ptrom = trial_run("ptrom", input_, path, span_, trial_, *lspg, communicator_);
+  });
   report.section("training")["time_windows"] = ends.size();
-  report.section("training")["trial"] = errors.facts();
-  return errors;
+  report.section("training")["trial"] = trials.gnat.facts();
+  if (trials.ptrom) report.section("training")["trial_clustered"] = trials.ptrom->facts();
+  return trials;
+}
+
+void ProcedureTwo::warn_of(const TrialErrors& errors, const std::string& run, RunReport& report) const {
+  if (errors.diverged) {
+    warn(fmt::format("the {} of the reduction diverged: take more samples, fewer residual modes or shorter windows",
+                     run),
+         report);
+  } else if (errors.capped_steps > 0) {
+    warn(fmt::format("{} steps of the {} reached the cap of iterations", errors.capped_steps, run), report);
+  }
 }
 
 void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
@@ -348,7 +383,8 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   AtomicPath path(file, communicator_);
   double aim = windows_.error.value_or(0.0);
   if (windows_.error) costs_ = std::make_unique<WindowCosts>(snapshots_, *communicator_);
-  TrialErrors errors = attempt(path.temporary(), aim, report);
+  Trials trials = attempt(path.temporary(), aim, report);
+  const TrialErrors& errors = trials.gnat;
   if (windows_.error) {
     const double wanted = *windows_.error;
     const auto reached = [this](const TrialErrors& trial) {
@@ -356,7 +392,7 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
     };
     for (int k = 1; k < most_attempts && (errors.diverged || reached(errors) > wanted); ++k) {
       aim *= errors.diverged ? 0.3 : std::clamp(0.7 * wanted / reached(errors), 0.1, 0.7);
-      errors = attempt(path.temporary(), aim, report);
+      trials = attempt(path.temporary(), aim, report);
     }
     if (!errors.diverged && reached(errors) > wanted) {
       warn(fmt::format("windows with an error of {:.3g} % were asked for; the last of {} attempts has {:.3g} %: take "
@@ -365,14 +401,12 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
            report);
     }
   }
-  if (errors.diverged) {
-    warn("the trial run of the reduction diverged: take more samples, fewer residual modes or shorter windows", report);
-  } else if (errors.capped_steps > 0) {
-    warn(fmt::format("{} steps of the trial run reached the cap of iterations", errors.capped_steps), report);
-  }
+  warn_of(errors, "trial run", report);
+  if (trials.ptrom) warn_of(*trials.ptrom, "trial run on clustered sources", report);
   {
     hdf5::File written = hdf5::File::modify(path.temporary(), communicator_);
     written.attribute("trial", errors.facts().dump());
+    if (trials.ptrom) written.attribute("trial_clustered", trials.ptrom->facts().dump());
     written.flush();
   }
   path.commit();
