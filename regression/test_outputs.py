@@ -19,11 +19,12 @@ COMPONENTS = {
     "kernel": ["cubic spline", "wendland c2"],
     "linear solver": ["bicgstab", "cg", "gmres"],
     "material": ["316L", "constant", "formula", "table"],
-    "method": ["fom", "galerkin", "gnat", "lspg"],
+    "method": ["fom", "galerkin", "gnat", "lspg", "ptrom"],
     "model": ["sph heat"],
     "observer": ["extremes", "fields", "probes"],
     "particles": ["file", "lattice"],
     "sampling": ["greedy"],
+    "source clustering": ["paper", "per row", "robust"],
     "time scheme": [
         "backward euler", "bdf2", "explicit euler", "heun", "linear multistep", "rk4", "ssp rk3", "trapezoidal",
     ],

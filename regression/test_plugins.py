@@ -25,6 +25,7 @@ TWINS = {
     "plugin method": "fom",
     "plugin_observer": "extremes",
     "plugin sampling": "greedy",
+    "plugin clustering": "per row",
     "plugin trainer": "procedure ii",
 }
 CASE = """\
@@ -49,6 +50,7 @@ reduction:
   basis: {rank: 3}
   residual_basis: {rank: 4}
   sampling: {type: plugin sampling, samples: 20}
+  clustering: {type: plugin clustering, clusters: 8}
 output:
   directory: results
   fields: {every: 10}
@@ -118,9 +120,10 @@ class LoadingTest(PluginsTest):
             for command in ("run", "train"):
                 self.works(command, "case.yaml", "--quiet", ranks=ranks)
                 self.works(command, "twins.yaml", "--quiet", ranks=ranks)
-            self.works("run", "case.yaml", "--quiet", "--set", "method.type=gnat", ranks=ranks)
-            self.works("run", "twins.yaml", "--quiet", "--set", "method.type=gnat", ranks=ranks)
-            for mine, theirs in (("plugin method", "fom"), ("gnat", "gnat")):
+            for method in ("gnat", "ptrom"):
+                self.works("run", "case.yaml", "--quiet", "--set", f"method.type={method}", ranks=ranks)
+                self.works("run", "twins.yaml", "--quiet", "--set", f"method.type={method}", ranks=ranks)
+            for mine, theirs in (("plugin method", "fom"), ("gnat", "gnat"), ("ptrom", "ptrom")):
                 for file in ("run.h5", "extremes.csv"):
                     compared = self.works(
                         "compare", f"results/{mine}/{file}", f"twins/{theirs}/{file}", "--tolerance", "0"

@@ -13,13 +13,14 @@ from harness import SMALL, KilnTest, command, datasets, digests, main
 
 # Slow enough that the beam stays on the part, long enough that a kill comes in the middle.
 CASE = ("model.heat_source.velocity=[0.1 m/s, 0 m/s]", "output.checkpoint.every=4")
-END = {"fom": "time.end=10 ms", "gnat": "time.end=20 ms"}
-STEPS = {"fom": 200, "gnat": 400}
+END = {"fom": "time.end=10 ms", "gnat": "time.end=20 ms", "ptrom": "time.end=20 ms"}
+STEPS = {"fom": 200, "gnat": 400, "ptrom": 400}
 
 
 class RestartTest(KilnTest):
     def prepare(self):
-        self.solve("train", *CASE, END["gnat"], into="trained")
+        clustering = "reduction.clustering={type: per row, clusters: 8}"
+        self.solve("train", *CASE, END["gnat"], clustering, into="trained")
 
     def overrides(self, method):
         return CASE + (END[method], f"method.type={method}")
@@ -106,6 +107,9 @@ class RestartTest(KilnTest):
 
     def test_gnat_on_two_ranks(self):
         self.check("gnat", (100,), ranks=2)
+
+    def test_ptrom(self):
+        self.check("ptrom", (150,), ranks=2)
 
     def test_killed_twice(self):
         undisturbed = self.solve("run", *self.overrides("fom"), into="undisturbed") / "fom"

@@ -16,6 +16,8 @@ namespace hdf5 {
 class Group;
 }
 
+struct SourceClusters;
+
 /// What the heat model keeps of its particles on this rank: rows, their sources, and the pairs between them. Neighbours
 /// of a row are ordered by global id, so that sums do not depend on the number of ranks.
 struct HeatDomain {
@@ -47,6 +49,11 @@ HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings
 /// The part of a domain that the given rows need; each row stays on its rank. Throws InputError for a row that the
 /// domain does not have or that is listed twice. Collective.
 HeatDomain sampled_domain(const HeatDomain& domain, const std::vector<GlobalIndex>& rows);
+
+/// As sampled_domain for the rows of the clusters, whose sources are the rows and, with the ids that PairwiseModel
+/// gives them, the clusters: each has the mean mass and position of its members, and its pair the weight that makes
+/// weight · mass the cluster's. Throws InputError for a member that the domain does not have. Collective.
+HeatDomain clustered_domain(const HeatDomain& domain, const SourceClusters& clusters);
 
 /// Writes a domain in an order that does not depend on the number of ranks. Collective.
 void save_domain(const HeatDomain& domain, hdf5::Group& group);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "framework/model/Model.hpp"
+#include "framework/model/PairwiseModel.hpp"
 #include "framework/registry/Specification.hpp"
 #include "physics/sph/HeatDomain.hpp"
 #include "physics/sph/HeatSource.hpp"
@@ -20,7 +21,7 @@ namespace kiln {
 /// taken at particle i. Pair terms are antisymmetric: Σ m_i c_i f_i = Σ q_i A_i to round-off.
 ///
 /// Evaluations write to work arrays the model keeps: one evaluation at a time.
-class HeatModel final : public Model {
+class HeatModel final : public Model, public PairwiseModel {
  public:
   static Specification specification();
   HeatModel(const Teuchos::ParameterList& list, const Context& context);
@@ -45,6 +46,10 @@ class HeatModel final : public Model {
   std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const override;
   void save_sample(hdf5::Group& group) const override;
 
+  /// w_ij = m_j r_ij·∇W_ij/r_ij² in kg/m⁵: what is left of a pair's term depends on two temperatures alone.
+  PairWeights pair_weights(const std::vector<GlobalIndex>& rows) const override;
+  std::unique_ptr<Model> clustered(const SourceClusters& clusters) const override;
+
   /// Points go through the particles and their pairs as the lanes of vectors: neighbours and weights are read once for
   /// eight points.
   std::unique_ptr<PointRates> at_points(const ParameterPoints& points) override;
@@ -61,6 +66,8 @@ class HeatModel final : public Model {
  private:
   HeatModel(const Teuchos::ParameterList& list, const Context& context, const MaterialTable& table);
   HeatModel(const Teuchos::ParameterList& list, const MaterialTable& table, HeatDomain domain);
+  /// This model on another domain, its live parameters as they are.
+  std::unique_ptr<HeatModel> on(HeatDomain domain) const;
   LocalIndex row_count() const { return static_cast<LocalIndex>(domain_.areas.extent(0)); }
   LocalIndex source_count() const { return static_cast<LocalIndex>(domain_.masses.extent(0)); }
   void check(const char* method, std::size_t u, std::size_t f) const;

@@ -1,72 +1,15 @@
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
-#include <numeric>
 #include <type_traits>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "physics/sph/DomainParts.hpp"
 #include "physics/sph/HeatModel.hpp"
 
 namespace kiln {
 namespace {
-
-/// Local data of a domain on the host.
-struct HostDomain {
-  explicit HostDomain(const HeatDomain& domain)
-      : rows(ids(*domain.rows)),
-        sources(ids(*domain.sources)),
-        positions(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.positions)),
-        masses(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.masses)),
-        areas(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.areas)),
-        offsets(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.pairs.offsets)),
-        neighbours(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.pairs.neighbours)),
-        weights(Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain.weights)) {}
-
-  static std::vector<GlobalIndex> ids(const Map& map) {
-    std::vector<GlobalIndex> result(map.getNodeNumElements());
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = map.getGlobalElement(static_cast<LocalIndex>(i));
-    return result;
-  }
-
-  std::vector<GlobalIndex> rows, sources;
-  PositionView::HostMirror positions;
-  VectorView::HostMirror masses, areas;
-  OffsetView::HostMirror offsets;
-  IndexView::HostMirror neighbours;
-  VectorView::HostMirror weights;
-};
-
-/// The pieces of a domain as plain arrays, neighbours as indices into the sources; turned into views at the end.
-struct DomainParts {
-  std::vector<GlobalIndex> rows, sources;
-  std::vector<Point> positions;
-  std::vector<double> masses, areas, weights;
-  std::vector<std::size_t> offsets{0};
-  std::vector<LocalIndex> neighbours;
-};
-
-template <class View, class T>
-View filled(const std::vector<T>& values) {
-  View view(Kokkos::view_alloc(Kokkos::WithoutInitializing, "sample"), values.size());
-  const auto host = Kokkos::create_mirror_view(view);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(view, host);
-  return view;
-}
-
-HeatDomain assembled(const DomainParts& parts, const Teuchos::RCP<const Communicator>& communicator) {
-  HeatDomain domain;
-  domain.rows = map_of(parts.rows, communicator);
-  domain.sources = map_of(parts.sources, communicator);
-  domain.positions = position_view(parts.positions);
-  domain.masses = filled<VectorView>(parts.masses);
-  domain.areas = filled<VectorView>(parts.areas);
-  domain.weights = filled<VectorView>(parts.weights);
-  domain.pairs = {filled<OffsetView>(parts.offsets), filled<IndexView>(parts.neighbours)};
-  return domain;
-}
 
 /// Sources of chosen rows: the rows themselves, then every other one that `refers` to, ascending.
 std::vector<GlobalIndex> ordered_sources(const std::vector<GlobalIndex>& rows, std::vector<GlobalIndex> refers) {
@@ -85,41 +28,12 @@ LocalIndex place(const std::vector<GlobalIndex>& sources, std::size_t rows, Glob
   return static_cast<LocalIndex>(found - sources.begin());
 }
 
-/// Local arrays of all ranks, one after the other, on each rank.
-template <class T>
-std::vector<T> gathered(const std::vector<T>& local, const Communicator& communicator) {
-  const int ranks = communicator.getSize();
-  std::vector<int> counts(ranks);
-  const int count = static_cast<int>(local.size());
-  Teuchos::gatherAll(communicator, 1, &count, ranks, counts.data());
-  const int widest = *std::max_element(counts.begin(), counts.end());
-  std::vector<T> padded(local);
-  padded.resize(widest);
-  std::vector<T> received(static_cast<std::size_t>(widest) * ranks);
-  if (widest > 0) {
-    Teuchos::gatherAll(communicator, widest, padded.data(), widest * ranks, received.data());
-  }
-  std::vector<T> all;
-  for (int rank = 0; rank < ranks; ++rank) {
-    const auto first = received.begin() + static_cast<std::ptrdiff_t>(widest) * rank;
-    all.insert(all.end(), first, first + counts[rank]);
-  }
-  return all;
-}
-
 template <class T>
 std::vector<T> reordered(const std::vector<T>& values, const std::vector<std::size_t>& order) {
   std::vector<T> result;
   result.reserve(order.size());
   for (const std::size_t i : order) result.push_back(values[i]);
   return result;
-}
-
-std::vector<std::size_t> ascending(const std::vector<GlobalIndex>& ids) {
-  std::vector<std::size_t> order(ids.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&ids](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
-  return order;
 }
 
 }  // namespace
@@ -318,10 +232,14 @@ MaterialTable restored_table(const hdf5::Group& group) {
 
 }  // namespace
 
-std::unique_ptr<Model> HeatModel::sampled(const std::vector<GlobalIndex>& rows) const {
-  auto model = std::unique_ptr<HeatModel>(new HeatModel(list_, table_, sampled_domain(domain_, rows)));
+std::unique_ptr<HeatModel> HeatModel::on(HeatDomain domain) const {
+  auto model = std::unique_ptr<HeatModel>(new HeatModel(list_, table_, std::move(domain)));
   for (const Parameter& parameter : parameters_.list()) model->parameters_.set(parameter.name, *parameter.value);
   return model;
+}
+
+std::unique_ptr<Model> HeatModel::sampled(const std::vector<GlobalIndex>& rows) const {
+  return on(sampled_domain(domain_, rows));
 }
 
 void HeatModel::save_sample(hdf5::Group& group) const {

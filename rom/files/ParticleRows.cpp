@@ -52,7 +52,7 @@ MatrixView unfold(const MatrixView& particles, int components) {
 }
 
 ParticleTable ParticleTable::gather(const std::vector<GlobalIndex>& ids, const Map& map, ConstPositionView positions,
-                                    const MatrixView& reference, const MatrixView& modes, int components) {
+                                    const VectorView& reference, const std::vector<MatrixView>& modes, int components) {
   ParticleTable table;
   table.ids = ids;
   table.components = components;
@@ -62,9 +62,41 @@ ParticleTable ParticleTable::gather(const std::vector<GlobalIndex>& ids, const M
     for (int d = 0; d < 3; ++d) columns(i, d) = positions(i, d);
   }
   table.positions = gather_rows(ids, map, columns).values;
-  table.reference = gather_rows(ids, map, fold(reference, components));
-  table.modes = gather_rows(ids, map, fold(modes, components));
+  table.reference = gather_rows(ids, map, fold(MatrixView(reference.data(), reference.extent(0), 1), components));
+  std::vector<hdf5::Array<double>> windows;
+  std::size_t width = 0;
+  for (const MatrixView& of_window : modes) {
+    windows.push_back(gather_rows(ids, map, fold(of_window, components)));
+    width += windows.back().shape[1];
+  }
+  table.modes.shape = {ids.size(), width};
+  table.modes.values.reserve(ids.size() * width);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (const hdf5::Array<double>& window : windows) {
+      const auto row = window.values.begin() + static_cast<std::ptrdiff_t>(i * window.shape[1]);
+      table.modes.values.insert(table.modes.values.end(), row, row + static_cast<std::ptrdiff_t>(window.shape[1]));
+    }
+  }
   return table;
+}
+
+VectorView ParticleTable::reference_entries() const {
+  VectorView entries("kiln::rom::reference", reference.values.size());
+  std::copy(reference.values.begin(), reference.values.end(), entries.data());
+  return entries;
+}
+
+MatrixView ParticleTable::mode_entries() const {
+  const std::size_t width = modes.shape[1], columns = width / components;
+  MatrixView entries("kiln::rom::modes", ids.size() * components, columns);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (std::size_t k = 0; k < columns; ++k) {
+      for (int c = 0; c < components; ++c) {
+        entries(i * components + c, k) = modes.values[i * width + k * components + c];
+      }
+    }
+  }
+  return entries;
 }
 
 void ParticleTable::write(hdf5::Group& group) const {

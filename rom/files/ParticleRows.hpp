@@ -21,12 +21,17 @@ struct ParticleTable {
   hdf5::Array<double> reference;  ///< ids × components
   hdf5::Array<double> modes;      ///< ids × (M · components), folded
 
-  /// From distributed data: rows of `map`, each particle on one rank. `ids` ascending. Collective.
+  /// From distributed data: rows of `map`, each particle on one rank. `ids` ascending; `modes`: those of one time
+  /// window after the other, which come to stand side by side. Collective.
   static ParticleTable gather(const std::vector<GlobalIndex>& ids, const Map& map, ConstPositionView positions,
-                              const MatrixView& reference, const MatrixView& modes, int components);
+                              const VectorView& reference, const std::vector<MatrixView>& modes, int components);
   /// Datasets ids, positions, reference and modes of a group.
   void write(hdf5::Group& group) const;
   static ParticleTable read(const hdf5::Group& group, int components, int modes);
+
+  /// Entries of the particles, × components, as reductions compute with them: unfolded.
+  VectorView reference_entries() const;
+  MatrixView mode_entries() const;
 
   /// Place of a particle in the table; −1 if it is not there.
   std::ptrdiff_t find(GlobalIndex id) const;

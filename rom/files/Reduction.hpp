@@ -2,10 +2,12 @@
 
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/model/Model.hpp"
+#include "rom/files/ClusteredMesh.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/sampling/GappyOperator.hpp"
 
@@ -19,6 +21,7 @@ struct WindowReduction {
   GappyOperator gappy_operator;
   std::vector<GlobalIndex> sampled;  ///< ids, ascending
   std::unique_ptr<Model> sample;     ///< the model on the sampled particles alone
+  std::optional<ClusteredMesh> clustered = {};
 };
 
 /// All that training learns, before it is written. Row-space arrays stand on the full model's rows.
@@ -28,12 +31,15 @@ struct Reduction {
   VectorView reference;  ///< u_ref at the rows
   std::vector<WindowReduction> windows;
   std::vector<GlobalIndex> queries;  ///< ids, ascending
+  /// Ids, ascending: where a component was highest or lowest at any step of the training.
+  std::vector<GlobalIndex> extremes;
 };
 
 /// Writes a reduction file. It holds everything an online run needs:
 ///
 ///     attributes      format, format_version, model_type, model_input (checked, as YAML), model_hash, provenance,
-///                     components, particles; trial (JSON), the errors of the training's trial run
+///                     components, particles; trial (JSON), the errors of the training's trial run;
+///                     trial_clustered (JSON), those of the clustered mesh's, where there is one
 ///     /parameters     live parameters of the model at training, one attribute each
 ///     /time           step in s and scheme (as YAML) of the training
 ///     /reference      u_ref (N)
@@ -42,7 +48,8 @@ struct Reduction {
 ///       sample_mesh/    rows, sources (ids); gappy_operator (n_r × n_p), residual_singular_values; attributes
 ///                       sigma_min, condition, residual_rank, residual_energy; model/, written by the model itself
 ///     /particles      the sources of all windows and the queried particles: ids, positions, reference, modes (of all
-///                     windows, one after the other), and the ids of the queries
+///                     windows, one after the other), and the ids of the queries; the particles of the extremes, too
+///     /targets        with source clustering: the same of the sampled particles in place of their sources
 ///
 /// Row i of reference and basis/ belongs to particle i. Online, a hyper-reduced run reads nothing of size N. Throws
 /// FileError. Collective.

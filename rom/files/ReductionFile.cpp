@@ -113,8 +113,21 @@ hdf5::Group ReductionFile::sample_model(std::size_t number) const {
   return window(number).group("sample_mesh").group("model");
 }
 
+bool ReductionFile::clustered() const {
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    if (!window(w).has("clusters")) return false;
+  }
+  return true;
+}
+
+hdf5::Group ReductionFile::clusters(std::size_t number) const { return window(number).group("clusters"); }
+
 ParticleTable ReductionFile::held_particles() const {
   return ParticleTable::read(file_.group("particles"), components_, coordinates());
+}
+
+ParticleTable ReductionFile::target_particles() const {
+  return ParticleTable::read(file_.group("targets"), components_, coordinates());
 }
 
 std::vector<GlobalIndex> ReductionFile::queries() const {
@@ -122,20 +135,23 @@ std::vector<GlobalIndex> ReductionFile::queries() const {
   return {ids.values.begin(), ids.values.end()};
 }
 
-ReductionFile::Rows rows_at(const Map& particles, const ParticleTable& table, std::size_t columns,
+ReductionFile::Rows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
                             const std::string& file) {
-  const std::size_t components = table.components, stride = table.modes.shape[1];
+  const std::size_t components = tables.front()->components;
   const std::size_t count = particles.getMyGlobalIndices().extent(0);
   VectorView reference("kiln::rom::reference", count * components);
   MatrixView modes("kiln::rom::modes", count * components, columns);
   std::optional<Fault> fault;
   for (std::size_t i = 0; i < count; ++i) {
     const GlobalIndex id = particles.getGlobalElement(static_cast<LocalIndex>(i));
-    const std::ptrdiff_t row = table.find(id);
-    if (row < 0) {
+    const auto holder = std::find_if(tables.begin(), tables.end(),
+                                     [id](const ParticleTable* candidate) { return candidate->find(id) >= 0; });
+    if (holder == tables.end()) {
       fault = Fault{"", fmt::format("holds no basis row of particle {}", id), {}};
       break;
     }
+    const ParticleTable& table = **holder;
+    const std::size_t row = table.find(id), stride = table.modes.shape[1];
     for (std::size_t c = 0; c < components; ++c) {
       reference(i * components + c) = table.reference.values[row * components + c];
       for (std::size_t k = 0; k < columns; ++k) {

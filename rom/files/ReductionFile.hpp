@@ -51,8 +51,14 @@ class ReductionFile {
   SampleMesh sample_mesh(std::size_t window) const;
   /// The group Model::save_sample wrote.
   hdf5::Group sample_model(std::size_t window) const;
-  /// The sources of all sample meshes and the queried particles.
+  /// Whether the training clustered the sources of every window.
+  bool clustered() const;
+  /// The group ClusteredMesh::write wrote.
+  hdf5::Group clusters(std::size_t window) const;
+  /// The sources of all sample meshes and the particles a run must be able to tell.
   ParticleTable held_particles() const;
+  /// The sampled particles of all windows in place of their sources. Throws FileError where nothing is clustered.
+  ParticleTable target_particles() const;
   std::vector<GlobalIndex> queries() const;
 
  private:
@@ -65,9 +71,9 @@ class ReductionFile {
   std::vector<TimeWindow> windows_;
 };
 
-/// The rows of a table at the particles of a map, and of its modes the first `columns`. Throws FileError naming `file`
-/// for a particle it lacks. Collective over the map's ranks.
-ReductionFile::Rows rows_at(const Map& particles, const ParticleTable& table, std::size_t columns,
+/// The rows of tables at the particles of a map, each in the first table that has it, and of the modes the first
+/// `columns`. Throws FileError naming `file` for a particle they lack. Collective over the map's ranks.
+ReductionFile::Rows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
                             const std::string& file);
 
 }  // namespace kiln

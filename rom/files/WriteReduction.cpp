@@ -57,20 +57,6 @@ void write_sample_mesh(hdf5::Group group, const WindowReduction& window, const s
   window.sample->save_sample(model);
 }
 
-/// The modes of all windows, side by side.
-MatrixView stacked_modes(const Reduction& reduction) {
-  std::size_t columns = 0;
-  for (const WindowReduction& window : reduction.windows) columns += window.basis.modes.extent(1);
-  const MatrixView stacked("kiln::rom::modes of all windows", reduction.reference.extent(0), columns);
-  std::size_t first = 0;
-  for (const WindowReduction& window : reduction.windows) {
-    const auto end = first + window.basis.modes.extent(1);
-    Kokkos::deep_copy(Kokkos::subview(stacked, Kokkos::ALL, std::make_pair(first, end)), window.basis.modes);
-    first = end;
-  }
-  return stacked;
-}
-
 }  // namespace
 
 void write_reduction(const std::string& file, const Reduction& reduction) {
@@ -87,7 +73,11 @@ void write_reduction(const std::string& file, const Reduction& reduction) {
   root.attribute_of("reference", "unit", reduction.model.fields().front().unit);
 
   hdf5::Group windows = root.create_group("windows");
-  std::vector<GlobalIndex> held = reduction.queries;
+  std::vector<GlobalIndex> told = reduction.queries;
+  told.insert(told.end(), reduction.extremes.begin(), reduction.extremes.end());
+  std::vector<GlobalIndex> held = told, targets = told;
+  bool clustered = false;
+  std::vector<MatrixView> modes;
   for (std::size_t w = 0; w < reduction.windows.size(); ++w) {
     const WindowReduction& window = reduction.windows[w];
     hdf5::Group group = windows.create_group(std::to_string(w));
@@ -95,13 +85,23 @@ void write_reduction(const std::string& file, const Reduction& reduction) {
     write_basis(group.create_group("basis"), rows, window.basis, components);
     const std::vector<GlobalIndex> sources = all_ids(*window.sample->sources());
     write_sample_mesh(group.create_group("sample_mesh"), window, sources);
+    if (window.clustered) window.clustered->write(group.create_group("clusters"));
+    modes.push_back(window.basis.modes);
     held.insert(held.end(), sources.begin(), sources.end());
+    targets.insert(targets.end(), window.sampled.begin(), window.sampled.end());
+    clustered = clustered || window.clustered;
   }
-  std::sort(held.begin(), held.end());
-  held.erase(std::unique(held.begin(), held.end()), held.end());
+  const auto table_of = [&](std::vector<GlobalIndex> ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ParticleTable::gather(ids, rows, reduction.model.positions(), reduction.reference, modes, components);
+  };
   hdf5::Group particles = root.create_group("particles");
-  ParticleTable::gather(held, rows, reduction.model.positions(), reference, stacked_modes(reduction), components)
-      .write(particles);
+  table_of(std::move(held)).write(particles);
+  if (clustered) {
+    hdf5::Group group = root.create_group("targets");
+    table_of(std::move(targets)).write(group);
+  }
   particles.write("queries", std::vector<long long>(reduction.queries.begin(), reduction.queries.end()));
   root.flush();
 }

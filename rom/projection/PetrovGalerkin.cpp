@@ -22,8 +22,7 @@ PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings, Proj
                         std::move(window.held)});
   }
   const TrialSpace& last = windows_.back().projection->trial();
-  coordinates_ = Teuchos::rcp(
-      new Map(last.first() + last.size(), 0, particles_->getComm(), Tpetra::LocallyReplicated));
+  coordinates_ = Teuchos::rcp(new Map(last.first() + last.size(), 0, particles_->getComm(), Tpetra::LocallyReplicated));
   parameters_ = projection().model().parameters();
   const Model* first = &projection().model();
   for (const OwnedWindow& window : windows_) {

@@ -10,6 +10,7 @@
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/queries/QueryPoints.hpp"
 #include "framework/registry/Registry.hpp"
+#include "rom/training/ExtremeRecord.hpp"
 #include "rom/training/Queries.hpp"
 #include "rom/training/SnapshotObserver.hpp"
 
@@ -95,7 +96,8 @@ FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos:
                                                    : fmt::format("full order, point {}/{}", point + 1, points_.count());
     ProgressObserver progress(label, 0, *communicator);
     std::vector<Observer*> observers{&record, &states};
-    if (point < learnt_) observers.push_back(&every);
+    ExtremeRecord extremes(method);
+    if (point < learnt_) observers.insert(observers.end(), {&every, &extremes});
     if (!settings.quiet) observers.push_back(&progress);
 
     VectorView x("kiln::rom::unknown", method.row_size());
@@ -104,9 +106,13 @@ FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos:
         Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"), TimeScheme::Context{method, span.step});
     scheme->start(x, 0.0);
     totals_.push_back(run_time_loop(method, *scheme, x, span, observers));
+    const std::vector<GlobalIndex> found = extremes.ids();
+    extremes_.insert(extremes_.end(), found.begin(), found.end());
     trial.query_values = record.values();
     trials_.push_back(std::move(trial));
   }
+  std::sort(extremes_.begin(), extremes_.end());
+  extremes_.erase(std::unique(extremes_.begin(), extremes_.end()), extremes_.end());
   go_home();
 }
 

@@ -49,6 +49,8 @@ class FullOrderRuns {
   std::size_t points() const { return trials_.size(); }
   /// The values of the parameters that vary, by name; empty where none does.
   nlohmann::json values(std::size_t point) const;
+  /// Where a component was highest or lowest after any step of the runs learnt from: ids, ascending.
+  const std::vector<GlobalIndex>& extremes() const { return extremes_; }
   /// Steps and evaluations of each run.
   const std::vector<LoopTotals>& totals() const { return totals_; }
 
@@ -63,6 +65,7 @@ class FullOrderRuns {
   VectorView reference_;
   Snapshots snapshots_{0};
   std::vector<TrialReference> trials_;
+  std::vector<GlobalIndex> extremes_;
   std::vector<LoopTotals> totals_;
 };
 

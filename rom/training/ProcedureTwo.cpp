@@ -17,8 +17,11 @@
 #include "framework/model/MaskedModel.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
+#include "rom/clustering/SourceClustering.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/Sampling.hpp"
+#include "rom/training/LearnClusters.hpp"
+#include "rom/training/UnknownRecord.hpp"
 
 namespace kiln {
 namespace {
@@ -94,6 +97,9 @@ Specification ProcedureTwo::specification() {
             "vectors as the trial basis",
             PodSettings::specification());
   s.component<Sampling>("sampling", "which particles the hyper-reduced run evaluates").defaults_to("greedy");
+  s.component<SourceClustering>("clustering",
+                                "how each sampled particle's sources become few, for ptrom; left out: not at all")
+      .optional();
   s.section("snapshots", "of the full-order state", snapshot_specification());
   s.sections("queries",
              "further positions whose state online runs can tell; probes of the output are always among them",
@@ -269,23 +275,33 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
 
   nlohmann::json& facts = report.section("training");
   facts["residual_basis"] = facts["sample_meshes"] = nlohmann::json::array();
+  if (clusters()) facts["clusters"] = nlohmann::json::array();
   LoopTotals totals;
   std::size_t taken = 0;
   double discarded = 0.0;
   std::vector<WindowReduction> windows;
   int first_step = 0;
   for (std::size_t w = 0; w < ends.size(); ++w) {
+    const std::vector<int> moments = clusters() ? clustering_steps(first_step, ends[w]) : std::vector<int>();
+    std::vector<VectorView> unknowns;
     for (std::size_t point = 0; point < marchers.size(); ++point) {
+      Marcher& marcher = marchers[point];
       std::string label = "LSPG";
       if (marchers.size() > 1) label += fmt::format(", point {}/{}", point + 1, marchers.size());
       if (ends.size() > 1) label += fmt::format(", window {}/{}", w + 1, ends.size());
       ProgressObserver progress(label, first_step, *communicator_);
-      std::vector<Observer*> observers;
+      UnknownRecord record(moments);
+      std::vector<Observer*> observers{&record};
       if (!quiet_) observers.push_back(&progress);
+      if (clusters()) {
+        unknowns.emplace_back("kiln::rom::unknown", marcher.x.extent(0));
+        Kokkos::deep_copy(unknowns.back(), marcher.x);
+      }
       full_order_->go_to(point);
       lspg.projection(w).forget_jacobian();
       const LoopTotals part =
-          run_time_loop(lspg, *marchers[point].scheme, marchers[point].x, {span_.step, first_step, ends[w]}, observers);
+          run_time_loop(lspg, *marcher.scheme, marcher.x, {span_.step, first_step, ends[w]}, observers);
+      unknowns.insert(unknowns.end(), record.unknowns().begin(), record.unknowns().end());
       totals.steps += part.steps;
       totals.residuals += part.residuals;
       totals.capped_steps += part.capped_steps;
@@ -293,6 +309,15 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
     taken += residuals.appended();
     discarded = std::max(discarded, residuals.discarded_energy());
     windows.push_back(learn_window(ends[w] * span_.step, std::move(bases[w]), residuals));
+    if (clusters()) {
+      const VectorView reference = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg.row_size()));
+      ClusteredMesh mesh =
+          learn_clusters(block_.sublist("clustering"), *full_order_->model(), reference, windows, unknowns);
+      facts["clusters"].push_back({{"clusters", mesh.clusters.clusters()},
+                                   {"pairs", mesh.clusters.row_clusters.size()},
+                                   {"unclustered_pairs", mesh.unclustered_pairs}});
+      windows.back().clustered = std::move(mesh);
+    }
     const WindowReduction& window = windows.back();
     facts["residual_basis"].push_back(facts_of(window.residual_basis));
     facts["sample_meshes"].push_back({{"end_s", window.end},
@@ -319,7 +344,7 @@ std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>&
   return windows;
 }
 
-TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunReport& report) {
+ProcedureTwo::Trials ProcedureTwo::attempt(const std::string& path, double error, RunReport& report) {
   std::vector<int> ends;
   std::vector<Pod> bases;
   stage("POD of the state", report, [&] {
@@ -335,25 +360,40 @@ TrialErrors ProcedureTwo::attempt(const std::string& path, double error, RunRepo
   });
   stage("reduction file", report, [&] {
     const VectorView rows = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg->row_size()));
-    write_reduction(path, {input_, *full_order_->model(), rows, std::move(windows), full_order_->trial(0).queries});
+    write_reduction(path, {input_, *full_order_->model(), rows, std::move(windows), full_order_->trial(0).queries,
+                           full_order_->extremes()});
   });
-  TrialErrors errors;
-  stage("trial run", report, [&] { errors = try_all(path, *lspg, report); });
+  Trials trials;
+  stage("trial run", report, [&] {
+    trials.gnat = try_all("gnat", "trial", path, *lspg, report);
+    if (clusters()) trials.ptrom = try_all("ptrom", "trial_clustered", path, *lspg, report);
+  });
   report.section("training")["time_windows"] = ends.size();
-  return errors;
+  return trials;
 }
 
-TrialErrors ProcedureTwo::try_all(const std::string& path, PetrovGalerkin& lspg, RunReport& report) const {
+void ProcedureTwo::warn_of(const TrialErrors& errors, const std::string& run, RunReport& report) const {
+  if (errors.diverged) {
+    warn(fmt::format("the {} of the reduction diverged: take more samples, fewer residual modes or shorter windows",
+                     run),
+         report);
+  } else if (errors.capped_steps > 0) {
+    warn(fmt::format("{} steps of the {} reached the cap of iterations", errors.capped_steps, run), report);
+  }
+}
+
+TrialErrors ProcedureTwo::try_all(const std::string& method, const std::string& section, const std::string& path,
+                                  PetrovGalerkin& lspg, RunReport& report) const {
   nlohmann::json points = nlohmann::json::array();
   TrialErrors worst;
   for (std::size_t point = 0; point < full_order_->points(); ++point) {
-    const TrialErrors errors = trial_run(input_, path, span_, full_order_->trial(point), lspg, communicator_);
+    const TrialErrors errors = trial_run(method, input_, path, span_, full_order_->trial(point), lspg, communicator_);
     worst = worst.worse(errors);
     points.push_back(errors.facts());
     points.back()["at"] = full_order_->values(point);
     points.back()["learnt"] = point < full_order_->learnt();
   }
-  nlohmann::json& facts = report.section("training")["trial"];
+  nlohmann::json& facts = report.section("training")[section];
   facts = worst.facts();
   if (full_order_->points() > 1) facts["points"] = points;
   return worst;
@@ -384,7 +424,8 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   AtomicPath path(file, communicator_);
   double aim = windows_.error.value_or(0.0);
   if (windows_.error) costs_ = std::make_unique<WindowCosts>(full_order_->snapshots(), *communicator_);
-  TrialErrors errors = attempt(path.temporary(), aim, report);
+  Trials trials = attempt(path.temporary(), aim, report);
+  const TrialErrors& errors = trials.gnat;
   if (windows_.error) {
     const double wanted = *windows_.error;
     const auto reached = [this](const TrialErrors& trial) {
@@ -392,7 +433,7 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
     };
     for (int k = 1; k < most_attempts && (errors.diverged || reached(errors) > wanted); ++k) {
       aim *= errors.diverged ? 0.3 : std::clamp(0.7 * wanted / reached(errors), 0.1, 0.7);
-      errors = attempt(path.temporary(), aim, report);
+      trials = attempt(path.temporary(), aim, report);
     }
     if (!errors.diverged && reached(errors) > wanted) {
       warn(fmt::format("windows with an error of {:.3g} % were asked for; the last of {} attempts has {:.3g} %: take "
@@ -401,14 +442,12 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
            report);
     }
   }
-  if (errors.diverged) {
-    warn("the trial run of the reduction diverged: take more samples, fewer residual modes or shorter windows", report);
-  } else if (errors.capped_steps > 0) {
-    warn(fmt::format("{} steps of the trial run reached the cap of iterations", errors.capped_steps), report);
-  }
+  warn_of(errors, "trial run", report);
+  if (trials.ptrom) warn_of(*trials.ptrom, "trial run on clustered sources", report);
   {
     hdf5::File written = hdf5::File::modify(path.temporary(), communicator_);
     written.attribute("trial", facts["trial"].dump());
+    if (trials.ptrom) written.attribute("trial_clustered", facts["trial_clustered"].dump());
     written.flush();
   }
   path.commit();

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "framework/driver/TimeLoop.hpp"
@@ -21,7 +22,7 @@ namespace kiln {
 ///   2. the windows, and in each the POD of u_n − u_begin: its trial basis Φ
 ///   3. LSPG without hyper-reduction over the same steps, at each of these points; the residual of every iteration is a
 ///      snapshot. Window by window, while it stands there: the residuals' POD Φ_r, for residual and Jacobian alike;
-///      sampling of particles; A = [PΦ_r]⁺ and the sample mesh
+///      sampling of particles; A = [PΦ_r]⁺ and the sample mesh; where asked for, clusters of its sources
 ///   4. the reduction file
 ///   5. a trial run of what is in the file at each of these points and those of `try_on`; its errors against the
 ///      full-order runs go into report and file
@@ -46,15 +47,23 @@ class ProcedureTwo : public Trainer {
   WindowReduction learn_window(double end, Pod basis, Snapshots& residuals);
   /// Bases of the windows on all rows.
   std::unique_ptr<PetrovGalerkin> lspg_method(const std::vector<int>& ends, const std::vector<Pod>& bases) const;
+  /// What trial runs of one reduction found.
+  struct Trials {
+    TrialErrors gnat;
+    std::optional<TrialErrors> ptrom;  ///< on the clustered sample mesh, where there is one
+  };
   /// One reduction, tried: the file is at `path` when it returns.
-  TrialErrors attempt(const std::string& path, double error, RunReport& report);
-  /// The worst over all points; each point's own errors go into the report.
-  TrialErrors try_all(const std::string& path, PetrovGalerkin& lspg, RunReport& report) const;
+  Trials attempt(const std::string& path, double error, RunReport& report);
+  /// The worst over all points of a hyper-reduced method; each point's own errors go into the report, as `section`.
+  TrialErrors try_all(const std::string& method, const std::string& section, const std::string& path,
+                      PetrovGalerkin& lspg, RunReport& report) const;
   /// Times a stage, shows it on rank 0, and puts its seconds into the report.
   void stage(const std::string& name, RunReport& report, const std::function<void()>& work);
   /// Limits snapshots as the input asks for.
   void hold_at_most(Snapshots& snapshots) const;
   void warn(const std::string& warning, RunReport& report) const;
+  void warn_of(const TrialErrors& errors, const std::string& run, RunReport& report) const;
+  bool clusters() const { return block_.isSublist("clustering"); }
 
   const Teuchos::ParameterList& input_;
   const Teuchos::ParameterList& block_;

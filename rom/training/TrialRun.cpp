@@ -8,30 +8,10 @@
 #include "framework/base/Error.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/time/TimeScheme.hpp"
+#include "rom/training/UnknownRecord.hpp"
 
 namespace kiln {
 namespace {
-
-/// Keeps the unknown at given steps.
-class UnknownRecord : public Observer {
- public:
-  explicit UnknownRecord(const std::vector<int>& steps) : steps_(steps) {}
-  void begin() override {}
-  void observe(const Moment& moment) override {
-    if (!std::binary_search(steps_.begin(), steps_.end(), moment.step)) return;
-    unknowns_.emplace_back("kiln::rom::unknown", moment.x.extent(0));
-    times_.push_back(moment.time);
-    Kokkos::deep_copy(unknowns_.back(), moment.x);
-  }
-  void finish(RunReport&) override {}
-  const std::vector<VectorView>& unknowns() const { return unknowns_; }
-  const std::vector<double>& times() const { return times_; }
-
- private:
-  const std::vector<int>& steps_;
-  std::vector<VectorView> unknowns_;
-  std::vector<double> times_;
-};
 
 void compare_queries(const std::vector<double>& exact, const std::vector<double>& approximate, std::size_t width,
                      TrialErrors& errors) {
@@ -116,12 +96,12 @@ TrialErrors TrialErrors::worse(const TrialErrors& other) const {
           diverged || other.diverged};
 }
 
-TrialErrors trial_run(const Teuchos::ParameterList& input, const std::filesystem::path& file, const TimeSpan& span,
-                      const TrialReference& reference, PetrovGalerkin& full_size,
+TrialErrors trial_run(const std::string& type, const Teuchos::ParameterList& input, const std::filesystem::path& file,
+                      const TimeSpan& span, const TrialReference& reference, PetrovGalerkin& full_size,
                       const Teuchos::RCP<const Communicator>& communicator) {
   Teuchos::ParameterList online(input);
   online.remove("method");
-  online.sublist("method").set<std::string>("type", "gnat").set("file", file.string());
+  online.sublist("method").set("type", type).set("file", file.string());
   online.sublist("method").set<std::string>("factors", "kept");
   const std::unique_ptr<Method> method =
       Registry<Method>::create(online.sublist("method"), Method::Context{online, communicator});

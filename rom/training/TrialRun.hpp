@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "framework/driver/TimeLoop.hpp"
@@ -57,10 +58,10 @@ struct TrialReference {
   Snapshots states;                  ///< u − u_0 at the full model's rows
 };
 
-/// Runs the hyper-reduced method of a reduction file as a user would and compares it with the full-order run.
-/// `full_size`: a reduced method with the same bases on all rows, which tells the whole field. Collective.
-TrialErrors trial_run(const Teuchos::ParameterList& input, const std::filesystem::path& file, const TimeSpan& span,
-                      const TrialReference& reference, PetrovGalerkin& full_size,
+/// Runs a hyper-reduced method, gnat or ptrom, on a reduction file as a user would and compares it with the full-order
+/// run. `full_size`: a reduced method with the same bases on all rows, which tells the whole field. Collective.
+TrialErrors trial_run(const std::string& type, const Teuchos::ParameterList& input, const std::filesystem::path& file,
+                      const TimeSpan& span, const TrialReference& reference, PetrovGalerkin& full_size,
                       const Teuchos::RCP<const Communicator>& communicator);
 
 }  // namespace kiln

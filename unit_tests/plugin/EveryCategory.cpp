@@ -13,6 +13,7 @@
 #include "physics/sph/Kernel.hpp"
 #include "physics/sph/Material.hpp"
 #include "physics/sph/Particles.hpp"
+#include "rom/clustering/PerRow.hpp"
 #include "rom/sampling/Greedy.hpp"
 #include "rom/training/ProcedureTwo.hpp"
 
@@ -94,6 +95,7 @@ KILN_REGISTER(LinearSolver, Gmres, "plugin solver", "as 'gmres'");
 KILN_REGISTER(Method, FullOrder, "plugin method", "as 'fom'");
 KILN_REGISTER(Observer, Extremes, "plugin observer", "as 'extremes'");
 KILN_REGISTER(Sampling, Greedy, "plugin sampling", "as 'greedy'");
+KILN_REGISTER(SourceClustering, PerRow, "plugin clustering", "as 'per row'");
 KILN_REGISTER(Trainer, ProcedureTwo, "plugin trainer", "as 'procedure ii'");
 
 }  // namespace

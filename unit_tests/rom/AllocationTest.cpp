@@ -82,6 +82,7 @@ Case small_case(const std::string& folder, int count) {
   values.samples = 10;
   values.tolerance = 1e-4;
   values.jacobian = "diagonal";
+  values.clustering = "per row";
   return values;
 }
 
@@ -106,10 +107,10 @@ Use online(Case values, const std::string& type) {
   return {largest, bytes};
 }
 
-TEST(Online, GnatAllocatesNothingOfFullSize) {
+TEST(Online, HyperReducedMethodsAllocateNothingOfFullSize) {
   KILN_NEEDS_HOOKS();
   constexpr int small = 20000, large = 8 * small;
-  std::vector<Use> gnat, galerkin;
+  std::vector<Use> gnat, ptrom, galerkin;
   for (const int count : {small, large}) {
     const TestFolder folder;
     const Case values = small_case(folder.path().string(), count);
@@ -118,6 +119,7 @@ TEST(Online, GnatAllocatesNothingOfFullSize) {
     Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, world()})
         ->train(values.folder + "/reduction.h5", report);
     gnat.push_back(online(values, "gnat"));
+    ptrom.push_back(online(values, "ptrom"));
     galerkin.push_back(online(values, "galerkin"));
   }
   const int ranks = world()->getSize();
@@ -125,9 +127,11 @@ TEST(Online, GnatAllocatesNothingOfFullSize) {
   // The hooks see what grows: a method of full size holds vectors of a rank's share of the particles, and many of them.
   EXPECT_GE(galerkin[1].largest, vector_of_all);
   EXPECT_GT(galerkin[1].bytes - galerkin[0].bytes, 10 * vector_of_all * 7 / 8);
-  EXPECT_LT(gnat[1].largest, vector_of_all);
-  EXPECT_LE(gnat[1].largest, gnat[0].largest + 1024);
-  EXPECT_LT(gnat[1].bytes - gnat[0].bytes, vector_of_all / 4);
+  for (const std::vector<Use>& hyper_reduced : {gnat, ptrom}) {
+    EXPECT_LT(hyper_reduced[1].largest, vector_of_all);
+    EXPECT_LE(hyper_reduced[1].largest, hyper_reduced[0].largest + 1024);
+    EXPECT_LT(hyper_reduced[1].bytes - hyper_reduced[0].bytes, vector_of_all / 4);
+  }
 }
 
 TEST(Online, AFrozenIterationAllocatesNothing) {

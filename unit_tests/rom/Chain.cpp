@@ -8,13 +8,14 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 
 namespace kiln::test {
 namespace {
 
 constexpr int reach = 4;
-constexpr int offsets[reach] = {-1, 1, -2, 2};
+constexpr int steps[reach] = {-1, 1, -2, 2};
 constexpr double weights[reach] = {1.0, 1.0, 0.25, 0.25};
 
 }  // namespace
@@ -53,20 +54,29 @@ Chain::Chain(const Teuchos::ParameterList& list, const Context& context, const h
   read(list);
   const hdf5::Array<long long> rows = group.integers("rows", {0});
   all_rows_.assign(rows.values.begin(), rows.values.end());
+  if (group.has("clusters")) {
+    const auto clusters = std::make_shared<Clustered>();
+    for (const long long offset : group.integers("offsets").values) clusters->offsets.push_back(offset);
+    clusters->sources = group.integers("clusters").values;
+    clusters->weights = group.reals("weights").values;
+    clusters->positions = group.reals("positions").values;
+    clustered_ = clusters;
+  }
   const std::size_t rank = context.communicator->getRank(), ranks = context.communicator->getSize();
   build(
       {all_rows_.begin() + all_rows_.size() * rank / ranks, all_rows_.begin() + all_rows_.size() * (rank + 1) / ranks},
       context.communicator);
 }
 
-Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows)
+Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows, std::shared_ptr<const Clustered> clustered)
     : count_(full.count_),
       components_(full.components_),
       diffusion_(full.diffusion_),
       reaction_(full.reaction_),
       power_(full.power_),
       velocity_(full.velocity_),
-      all_rows_(rows) {
+      all_rows_(rows),
+      clustered_(std::move(clustered)) {
   parameters_.add("power", "W", &power_);
   parameters_.add("velocity", "m/s", &velocity_);
   std::sort(all_rows_.begin(), all_rows_.end());
@@ -77,13 +87,32 @@ Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows)
   build(mine, full.rows_->getComm());
 }
 
+double Chain::position(GlobalIndex particle) const {
+  if (particle >= count_) return clustered_->positions[particle - count_];
+  return (static_cast<double>(particle) + 0.5) / count_;
+}
+
+std::vector<std::pair<GlobalIndex, double>> Chain::pairs_of(GlobalIndex row) const {
+  std::vector<std::pair<GlobalIndex, double>> pairs;
+  if (clustered_ != nullptr) {
+    const std::size_t place = std::lower_bound(all_rows_.begin(), all_rows_.end(), row) - all_rows_.begin();
+    for (std::size_t pair = clustered_->offsets[place]; pair < clustered_->offsets[place + 1]; ++pair) {
+      pairs.emplace_back(clustered_->sources[pair], clustered_->weights[pair]);
+    }
+    return pairs;
+  }
+  for (int k = 0; k < reach; ++k) {
+    const GlobalIndex other = row + steps[k];
+    if (other >= 0 && other < count_) pairs.emplace_back(other, weights[k]);
+  }
+  return pairs;
+}
+
 void Chain::build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const Communicator>& communicator) {
   std::vector<GlobalIndex> sources = mine;
   std::unordered_set<GlobalIndex> known(mine.begin(), mine.end());
   for (const GlobalIndex id : mine) {
-    for (const int offset : offsets) {
-      const GlobalIndex other = id + offset;
-      if (other < 0 || other >= count_) continue;
+    for (const auto& [other, weight] : pairs_of(id)) {
       if (known.insert(other).second) sources.push_back(other);
     }
   }
@@ -91,10 +120,11 @@ void Chain::build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const
   rows_ = Teuchos::rcp(new Map(unknown, Teuchos::arrayViewFromVector(mine), 0, communicator));
   sources_ = Teuchos::rcp(new Map(unknown, Teuchos::arrayViewFromVector(sources), 0, communicator));
   for (const GlobalIndex id : mine) {
-    for (const int offset : offsets) {
-      const GlobalIndex other = id + offset;
-      neighbours_.push_back(other < 0 || other >= count_ ? -1 : sources_->getLocalElement(other));
+    for (const auto& [other, weight] : pairs_of(id)) {
+      neighbours_.push_back(sources_->getLocalElement(other));
+      weights_.push_back(weight);
     }
+    offsets_.push_back(neighbours_.size());
   }
   positions_ = PositionView("test::positions", sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i) positions_(i, 0) = position(sources[i]);
@@ -118,9 +148,8 @@ void Chain::rate(ConstVectorView u, double time, VectorView f) const {
   for (std::size_t i = 0; i < rows; ++i) {
     for (int c = 0; c < components_; ++c) {
       double sum = 0.0;
-      for (int k = 0; k < reach; ++k) {
-        const LocalIndex j = neighbours_[i * reach + k];
-        if (j >= 0) sum += weights[k] * (u(j * components_ + c) - u(i * components_ + c));
+      for (std::size_t pair = offsets_[i]; pair < offsets_[i + 1]; ++pair) {
+        sum += weights_[pair] * (u(neighbours_[pair] * components_ + c) - u(i * components_ + c));
       }
       f(i * components_ + c) = (c == 0 ? 1.0 : 0.5) * diffusion_ * sum;
     }
@@ -139,9 +168,7 @@ void Chain::rate_jacobian_diagonal(ConstVectorView u, double, VectorView diagona
   for (std::size_t i = 0; i < rows; ++i) {
     for (int c = 0; c < components_; ++c) {
       double sum = 0.0;
-      for (int k = 0; k < reach; ++k) {
-        if (neighbours_[i * reach + k] >= 0) sum -= weights[k];
-      }
+      for (std::size_t pair = offsets_[i]; pair < offsets_[i + 1]; ++pair) sum -= weights_[pair];
       diagonal(i * components_ + c) = (c == 0 ? 1.0 : 0.5) * diffusion_ * sum;
     }
     const double own = u(i * components_);
@@ -155,9 +182,8 @@ void Chain::apply_rate_jacobian(ConstVectorView u, double, ConstMatrixView v, Ma
     for (std::size_t i = 0; i < rows; ++i) {
       for (int c = 0; c < components_; ++c) {
         double sum = 0.0;
-        for (int k = 0; k < reach; ++k) {
-          const LocalIndex j = neighbours_[i * reach + k];
-          if (j >= 0) sum += weights[k] * (v(j * components_ + c, column) - v(i * components_ + c, column));
+        for (std::size_t pair = offsets_[i]; pair < offsets_[i + 1]; ++pair) {
+          sum += weights_[pair] * (v(neighbours_[pair] * components_ + c, column) - v(i * components_ + c, column));
         }
         product(i * components_ + c, column) = (c == 0 ? 1.0 : 0.5) * diffusion_ * sum;
       }
@@ -172,11 +198,48 @@ void Chain::apply_rate_jacobian(ConstVectorView u, double, ConstMatrixView v, Ma
 }
 
 std::unique_ptr<Model> Chain::sampled(const std::vector<GlobalIndex>& rows) const {
-  return std::unique_ptr<Model>(new Chain(*this, rows));
+  return std::unique_ptr<Model>(new Chain(*this, rows, nullptr));
+}
+
+PairWeights Chain::pair_weights(const std::vector<GlobalIndex>& rows) const {
+  PairWeights pairs;
+  pairs.rows = rows;
+  std::sort(pairs.rows.begin(), pairs.rows.end());
+  pairs.offsets.push_back(0);
+  for (const GlobalIndex row : pairs.rows) {
+    if (row < 0 || row >= count_) throw InputError("", "particle " + std::to_string(row) + " is no row of the chain");
+    for (const auto& [source, weight] : pairs_of(row)) {
+      pairs.sources.push_back(source);
+      pairs.weights.push_back(weight);
+    }
+    pairs.offsets.push_back(pairs.sources.size());
+  }
+  return pairs;
+}
+
+std::unique_ptr<Model> Chain::clustered(const SourceClusters& clusters) const {
+  const auto kept = std::make_shared<Clustered>();
+  kept->offsets = clusters.row_offsets;
+  kept->weights = clusters.row_weights;
+  for (const std::size_t cluster : clusters.row_clusters) {
+    kept->sources.push_back(count_ + static_cast<GlobalIndex>(cluster));
+  }
+  kept->positions.resize(clusters.clusters(), 0.0);
+  for (std::size_t cluster = 0; cluster < clusters.clusters(); ++cluster) {
+    for (std::size_t m = clusters.member_offsets[cluster]; m < clusters.member_offsets[cluster + 1]; ++m) {
+      kept->positions[cluster] += clusters.shares[m] * position(clusters.members[m]);
+    }
+  }
+  return std::unique_ptr<Model>(new Chain(*this, clusters.rows, kept));
 }
 
 void Chain::save_sample(hdf5::Group& group) const {
   group.write("rows", std::vector<long long>(all_rows_.begin(), all_rows_.end()));
+  if (clustered_ == nullptr) return;
+  group.write("offsets", std::vector<long long>(clustered_->offsets.begin(), clustered_->offsets.end()));
+  group.write("clusters", std::vector<long long>(clustered_->sources.begin(), clustered_->sources.end()));
+  group.write("weights", clustered_->weights);
+  group.write("positions", clustered_->positions);
 }
 
 KILN_REGISTER(Model, Chain, "test chain", "diffusion, reaction and a moving source on a line; for tests");
@@ -232,6 +295,16 @@ Teuchos::ParameterList input_of(const Case& values) {
   sampling.set("type", std::string("greedy"));
   sampling.set("samples", values.samples);
   sampling.set("samples_per_mode", 2.0);
+  if (!values.clustering.empty()) {
+    Teuchos::ParameterList& clustering = reduction.sublist("clustering");
+    clustering.setName("reduction.clustering");
+    clustering.set("type", values.clustering);
+    if (values.clustering == "per row") {
+      clustering.set("clusters", values.clusters);
+    } else {
+      clustering.set("opening", 0.5).set("leaf", 1);
+    }
+  }
   reduction.sublist("snapshots").set("every", 1);
   if (values.windows > 0) reduction.sublist("windows").set("count", values.windows);
   if (values.window_error > 0.0) reduction.sublist("windows").set("error", values.window_error);

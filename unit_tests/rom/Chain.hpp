@@ -1,6 +1,7 @@
 #pragma once
 
 #include "framework/model/Model.hpp"
+#include "framework/model/PairwiseModel.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln::test {
@@ -12,8 +13,9 @@ namespace kiln::test {
 ///     dw/dt = D/2 Σ_j w_ij (w_j − w_i) − 0.5 u
 ///
 /// w_ij is 1 for neighbours and 1/4 for second neighbours. Everything is computed from a particle's id, so that nothing
-/// of size N is held by a sample. Registered as model "test chain".
-class Chain : public Model {
+/// of size N is held by a sample. Its pairs are linear in their sources, so that clusters with the pairs' own weights
+/// change nothing. Registered as model "test chain".
+class Chain : public Model, public PairwiseModel {
  public:
   static Specification specification();
   Chain(const Teuchos::ParameterList& list, const Context& context);
@@ -30,19 +32,33 @@ class Chain : public Model {
   void apply_rate_jacobian(ConstVectorView u, double time, ConstMatrixView v, MatrixView product) const override;
   std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const override;
   void save_sample(hdf5::Group& group) const override;
+  PairWeights pair_weights(const std::vector<GlobalIndex>& rows) const override;
+  std::unique_ptr<Model> clustered(const SourceClusters& clusters) const override;
 
  private:
-  Chain(const Chain& full, const std::vector<GlobalIndex>& rows);
+  /// What a chain of clustered sources cannot compute from ids: the same on every rank.
+  struct Clustered {
+    std::vector<std::size_t> offsets;        ///< one more than all_rows_
+    std::vector<GlobalIndex> sources;        ///< ids of clusters, of each pair
+    std::vector<double> weights, positions;  ///< of each pair; of each cluster
+  };
+
+  Chain(const Chain& full, const std::vector<GlobalIndex>& rows, std::shared_ptr<const Clustered> clustered);
   void read(const Teuchos::ParameterList& list);
   void build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const Communicator>& communicator);
-  double position(GlobalIndex particle) const { return (static_cast<double>(particle) + 0.5) / count_; }
+  /// Sources of a row, with their weights.
+  std::vector<std::pair<GlobalIndex, double>> pairs_of(GlobalIndex row) const;
+  double position(GlobalIndex particle) const;
 
   int count_ = 0, components_ = 1;
   double diffusion_ = 0.0, reaction_ = 0.0, power_ = 0.0, velocity_ = 0.0, offset_ = 0.0;
   std::vector<GlobalIndex> all_rows_;
   Teuchos::RCP<const Map> rows_, sources_;
   PositionView positions_;
-  std::vector<LocalIndex> neighbours_;  ///< four a row, −1: none
+  std::shared_ptr<const Clustered> clustered_;  ///< null: particles are the sources
+  std::vector<std::size_t> offsets_{0};         ///< where each row's pairs begin
+  std::vector<LocalIndex> neighbours_;
+  std::vector<double> weights_;
 };
 
 /// The chain as a model that offers nothing but what every model must, and positions. Registered as "test rate only".
@@ -79,6 +95,8 @@ struct Case {
   std::string jacobian = "matrix free";
   int basis_rank = 10, residual_rank = 12, samples = 24;
   std::string algorithm = "gram";
+  std::string clustering = "";           ///< empty: the block is left out
+  int clusters = 2;                      ///< of type "per row"
   int windows = 0;                       ///< 0: the block is left out
   double window_error = 0.0;             ///< likewise
   std::vector<double> train_on, try_on;  ///< powers; empty: the block is left out

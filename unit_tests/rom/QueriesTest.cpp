@@ -30,6 +30,7 @@ Case chain(const std::string& folder) {
   values.residual_rank = 6;
   values.samples = 15;
   values.windows = 4;
+  values.clustering = "per row";
   values.method = "gnat";
   return values;
 }
@@ -161,8 +162,8 @@ INSTANTIATE_TEST_SUITE_P(
                         "gnat", "trapezoidal",
                         "matrix free"},  // A difference quotient magnifies round-off by the inverse of its step, 1e8.
                     Setting{"gnat", "backward euler", "finite difference", 1e-10},
-                    Setting{"lspg", "backward euler", "diagonal"}, Setting{"galerkin", "bdf2", "sparse"},
-                    Setting{"galerkin", "explicit euler", "diagonal"}));
+                    Setting{"ptrom", "backward euler", "diagonal"}, Setting{"lspg", "backward euler", "diagonal"},
+                    Setting{"galerkin", "bdf2", "sparse"}, Setting{"galerkin", "explicit euler", "diagonal"}));
 
 TEST(Together, AnswersDoNotDependOnTheOtherPointsOfTheBlock) {
   const TestFolder folder;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <vector>
+
+#include "rom/files/Reduction.hpp"
+
+namespace kiln {
+
+/// Steps of a time window, its last one among them, at which a training keeps the state for source clustering: at most
+/// as many as tell where particles are in between. `first`: the step it begins with.
+std::vector<int> clustering_steps(int first, int last);
+
+/// Clusters the sources of the newest window's sampled rows and builds the model on them. `reference`: u_ref at the
+/// model's rows; `windows`: those learnt so far; `moments`: coordinates of all windows at the newest one's beginning
+/// and at its clustering_steps(); `block`: the input's `clustering`. Throws InputError for a model that is no
+/// PairwiseModel, and for pairs the clustering does not serve. Collective.
+ClusteredMesh learn_clusters(const Teuchos::ParameterList& block, const Model& model, const VectorView& reference,
+                             const std::vector<WindowReduction>& windows, const std::vector<VectorView>& moments);
+
+}  // namespace kiln
