@@ -14,20 +14,15 @@
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/model/Halo.hpp"
-#include "framework/model/MaskedModel.hpp"
-#include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
 #include "rom/clustering/SourceClustering.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/Sampling.hpp"
-#include "rom/training/LearnClusters.hpp"
-#include "rom/training/UnknownRecord.hpp"
+#include "rom/training/LearnWindows.hpp"
+#include "rom/training/PodFacts.hpp"
 
 namespace kiln {
 namespace {
-
-/// Below this, A = [PΦ_r]⁺ amplifies what Φ_r misses more than a hundredfold.
-constexpr double small_sigma = 1e-2;
 
 /// How often windows are cut shorter for an error they have missed.
 constexpr int most_attempts = 4;
@@ -48,40 +43,6 @@ Specification query_specification() {
   Specification s;
   s.reals("position", "where; the nearest particle is taken").unit("m").length(3);
   return s;
-}
-
-nlohmann::json facts_of(const Pod& pod) {
-  return {{"rank", pod.truncation.rank},
-          {"energy", pod.truncation.energy},
-          {"independent", pod.truncation.independent},
-          {"snapshots", pod.singular_values.size()},
-          {"largest_singular_value", pod.singular_values.front()},
-          {"last_singular_value_kept", pod.singular_values[pod.truncation.rank - 1]},
-          {"orthogonality", pod.orthogonality},
-          {"reorthogonalised", pod.reorthogonalised}};
-}
-
-/// One point's way through the windows.
-struct Marcher {
-  VectorView x;
-  std::unique_ptr<TimeScheme> scheme;
-};
-
-/// PΦ_r on every rank: the rows of the sampled particles, each with its components.
-MatrixView sampled_rows(const Map& rows, const MatrixView& modes, const std::vector<GlobalIndex>& ids, int components) {
-  MatrixView result("kiln::rom::P Phi_r", ids.size() * components, modes.extent(1));
-  const auto owned = static_cast<LocalIndex>(rows.getMyGlobalIndices().extent(0));
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const LocalIndex row = rows.getLocalElement(ids[i]);
-    if (row < 0 || row >= owned) continue;
-    for (int c = 0; c < components; ++c) {
-      for (std::size_t k = 0; k < modes.extent(1); ++k) {
-        result(i * components + c, k) = modes(row * components + c, k);
-      }
-    }
-  }
-  dense::sum_over_ranks(*rows.getComm(), result.data(), result.size());
-  return result;
 }
 
 }  // namespace
@@ -151,11 +112,6 @@ void ProcedureTwo::stage(const std::string& name, RunReport& report, const std::
   communicator_->barrier();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   report.section("training")["stages"].push_back({{"name", name}, {"wall_s", seconds.count()}});
-}
-
-void ProcedureTwo::hold_at_most(Snapshots& snapshots) const {
-  const Teuchos::ParameterList& settings = block_.sublist("snapshots");
-  if (settings.isParameter("hold")) snapshots.limit(settings.get<int>("hold"), communicator_);
 }
 
 void ProcedureTwo::warn(const std::string& warning, RunReport& report) const {
@@ -242,108 +198,6 @@ std::unique_ptr<PetrovGalerkin> ProcedureTwo::lspg_method(const std::vector<int>
                                           newton_);
 }
 
-WindowReduction ProcedureTwo::learn_window(double end, Pod basis, Snapshots& residuals) {
-  const std::shared_ptr<Model>& model = full_order_->model();
-  const int components = static_cast<int>(model->fields().size());
-  // With fewer residual modes than coordinates, Gauss–Newton's equations have more than one solution.
-  PodSettings settings = residual_settings_;
-  settings.at_least = basis.truncation.rank;
-  Pod residual_basis = pod(residuals, settings, *communicator_);
-  residuals.clear();
-  const std::vector<GlobalIndex> sampled = Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
-                                               ->sample(*model->rows(), residual_basis.modes, components);
-  GappyOperator gappy = gappy_operator(sampled_rows(*model->rows(), residual_basis.modes, sampled, components),
-                                       block_.sublist("sampling").name());
-  residual_basis.modes = {};
-  return {end, std::move(basis), std::move(residual_basis), gappy, sampled, sampled_or_masked(model, sampled)};
-}
-
-std::vector<WindowReduction> ProcedureTwo::learn_windows(const std::vector<int>& ends, std::vector<Pod> bases,
-                                                         PetrovGalerkin& lspg, RunReport& report) {
-  std::vector<Marcher> marchers;
-  for (std::size_t point = 0; point < full_order_->learnt(); ++point) {
-    full_order_->go_to(point);
-    marchers.push_back({VectorView("kiln::rom::unknown", local_size(*lspg.coordinates())),
-                        Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"),
-                                                     TimeScheme::Context{lspg, span_.step})});
-    lspg.initial(marchers.back().x);
-    marchers.back().scheme->start(marchers.back().x, 0.0);
-  }
-  Snapshots residuals(lspg.row_size());
-  hold_at_most(residuals);
-  lspg.observe_residuals([&residuals](ConstVectorView residual) { residuals.append(residual); });
-
-  nlohmann::json& facts = report.section("training");
-  facts["residual_basis"] = facts["sample_meshes"] = nlohmann::json::array();
-  if (clusters()) facts["clusters"] = nlohmann::json::array();
-  LoopTotals totals;
-  std::size_t taken = 0;
-  double discarded = 0.0;
-  std::vector<WindowReduction> windows;
-  int first_step = 0;
-  for (std::size_t w = 0; w < ends.size(); ++w) {
-    const std::vector<int> moments = clusters() ? clustering_steps(first_step, ends[w]) : std::vector<int>();
-    std::vector<VectorView> unknowns;
-    for (std::size_t point = 0; point < marchers.size(); ++point) {
-      Marcher& marcher = marchers[point];
-      std::string label = "LSPG";
-      if (marchers.size() > 1) label += fmt::format(", point {}/{}", point + 1, marchers.size());
-      if (ends.size() > 1) label += fmt::format(", window {}/{}", w + 1, ends.size());
-      ProgressObserver progress(label, first_step, *communicator_);
-      UnknownRecord record(moments);
-      std::vector<Observer*> observers{&record};
-      if (!quiet_) observers.push_back(&progress);
-      if (clusters()) {
-        unknowns.emplace_back("kiln::rom::unknown", marcher.x.extent(0));
-        Kokkos::deep_copy(unknowns.back(), marcher.x);
-      }
-      full_order_->go_to(point);
-      lspg.projection(w).forget_jacobian();
-      const LoopTotals part =
-          run_time_loop(lspg, *marcher.scheme, marcher.x, {span_.step, first_step, ends[w]}, observers);
-      unknowns.insert(unknowns.end(), record.unknowns().begin(), record.unknowns().end());
-      totals.steps += part.steps;
-      totals.residuals += part.residuals;
-      totals.capped_steps += part.capped_steps;
-    }
-    taken += residuals.appended();
-    discarded = std::max(discarded, residuals.discarded_energy());
-    windows.push_back(learn_window(ends[w] * span_.step, std::move(bases[w]), residuals));
-    if (clusters()) {
-      const VectorView reference = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg.row_size()));
-      ClusteredMesh mesh =
-          learn_clusters(block_.sublist("clustering"), *full_order_->model(), reference, windows, unknowns);
-      facts["clusters"].push_back({{"clusters", mesh.clusters.clusters()},
-                                   {"pairs", mesh.clusters.row_clusters.size()},
-                                   {"unclustered_pairs", mesh.unclustered_pairs}});
-      windows.back().clustered = std::move(mesh);
-    }
-    const WindowReduction& window = windows.back();
-    facts["residual_basis"].push_back(facts_of(window.residual_basis));
-    facts["sample_meshes"].push_back({{"end_s", window.end},
-                                      {"sampled", window.sampled.size()},
-                                      {"sigma_min", window.gappy_operator.smallest_singular_value},
-                                      {"gappy_condition", window.gappy_operator.condition}});
-    if (window.gappy_operator.smallest_singular_value < small_sigma) {
-      warn(fmt::format("the smallest singular value of PΦ_r is {:.2e} in the window that ends at {:g} s: the "
-                       "hyper-reduced residual may amplify what the residual basis misses by {:.0f}; take more "
-                       "samples or fewer residual modes",
-                       window.gappy_operator.smallest_singular_value, window.end,
-                       1.0 / window.gappy_operator.smallest_singular_value),
-           report);
-    }
-    first_step = ends[w];
-  }
-  lspg.observe_residuals({});
-  full_order_->go_home();
-  facts["lspg"] = {{"steps", totals.steps},
-                   {"residuals", totals.residuals},
-                   {"capped_steps", totals.capped_steps},
-                   {"residual_snapshots", taken},
-                   {"residual_energy_discarded", discarded}};
-  return windows;
-}
-
 ProcedureTwo::Trials ProcedureTwo::attempt(const std::string& path, double error, RunReport& report) {
   std::vector<int> ends;
   std::vector<Pod> bases;
@@ -356,7 +210,9 @@ ProcedureTwo::Trials ProcedureTwo::attempt(const std::string& path, double error
   std::vector<WindowReduction> windows;
   stage("LSPG run, POD of its residuals, sampling", report, [&] {
     lspg = lspg_method(ends, bases);
-    windows = learn_windows(ends, std::move(bases), *lspg, report);
+    LearnWindows learner({input_, block_, span_, residual_settings_, quiet_}, *full_order_, *lspg);
+    windows = learner.learn(ends, std::move(bases), report.section("training"));
+    for (const std::string& warning : learner.warnings()) warn(warning, report);
   });
   stage("reduction file", report, [&] {
     const VectorView rows = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg->row_size()));

@@ -41,10 +41,6 @@ class ProcedureTwo : public Trainer {
   /// Steps at which windows end, for windows that hold `error` where the input asks for that.
   std::vector<int> window_ends(double error) const;
   std::vector<Pod> window_bases(const std::vector<int>& ends, RunReport& report) const;
-  /// Marches LSPG through the windows and learns each one's sample mesh.
-  std::vector<WindowReduction> learn_windows(const std::vector<int>& ends, std::vector<Pod> bases, PetrovGalerkin& lspg,
-                                             RunReport& report);
-  WindowReduction learn_window(double end, Pod basis, Snapshots& residuals);
   /// Bases of the windows on all rows.
   std::unique_ptr<PetrovGalerkin> lspg_method(const std::vector<int>& ends, const std::vector<Pod>& bases) const;
   /// What trial runs of one reduction found.
@@ -59,8 +55,6 @@ class ProcedureTwo : public Trainer {
                       PetrovGalerkin& lspg, RunReport& report) const;
   /// Times a stage, shows it on rank 0, and puts its seconds into the report.
   void stage(const std::string& name, RunReport& report, const std::function<void()>& work);
-  /// Limits snapshots as the input asks for.
-  void hold_at_most(Snapshots& snapshots) const;
   void warn(const std::string& warning, RunReport& report) const;
   void warn_of(const TrialErrors& errors, const std::string& run, RunReport& report) const;
   bool clusters() const { return block_.isSublist("clustering"); }
