@@ -123,7 +123,9 @@ def write_run(results, found):
         columns = [file["particle"][:], *file["position"][:].T]
         for name, item in file.items():
             if isinstance(item, h5py.Dataset) and item.shape == (len(file["time"]), len(columns[0])):
-                names.append(f"{name} [{item.attrs['unit']}]")
+                label = f"{name} [{item.attrs['unit']}]"
+                # Of particles that move, x and y are the state as well.
+                names.append(f"last {label}" if label in names else label)
                 columns.append(item[-1])
     write_table(names, sorted(zip(*columns)), found / "run" / "field.csv")
     write_table(*read_table(folder / "probes.csv"), found / "run" / "probes.csv")

@@ -7,6 +7,9 @@
 
 namespace kiln {
 
+/// From here on 1 − e^{−z} rounds to 1.
+inline constexpr double one_minus_exponential_is_one = 40.0;
+
 /// 1 − e^{−z} of z ≥ 0, to a few units in the last place however small z is.
 KOKKOS_FORCEINLINE_FUNCTION double one_minus_exponential(double z) { return -expm1(-z); }
 
@@ -21,8 +24,7 @@ inline Lanes one_minus_exponential(const Lanes& z) {
   constexpr double log2_low = 1.90821492927058770002e-10;
   // Adding 1.5 · 2^52 leaves the nearest integer in the low bits of the sum.
   constexpr double rounder = 6755399441055744.0;
-  // Beyond this the exponential no longer changes the 1.
-  constexpr double farthest = 40.0;
+  constexpr double farthest = one_minus_exponential_is_one;
   const Lanes w = z < farthest ? z : all_lanes(farthest);
   const Lanes shifted = w * one_over_log2 + rounder;
   const Lanes n = shifted - rounder;

@@ -25,6 +25,9 @@ struct KernelSlope {
 /// q = 1/(r² + δ²): L. Rosenhead, Proc. R. Soc. A 127 (1930) 590; D. W. Moore (1972).
 class RosenheadMooreLaw {
  public:
+  /// Whether q is 1/s, s = r² + offset(), only where s reaches near_field().
+  static constexpr bool has_near_field = false;
+
   /// δ in m, above 0.
   explicit RosenheadMooreLaw(double core_radius) : offset_(core_radius * core_radius) {}
 
@@ -48,9 +51,16 @@ class RosenheadMooreLaw {
 /// q = (1 − exp(−r²/δ²))/r², the field of Lamb's decaying vortex (Oseen 1911) at the time at which 4νt = δ².
 class LambOseenLaw {
  public:
+  static constexpr bool has_near_field = true;
+
   /// δ in m, above 0.
   explicit LambOseenLaw(double core_radius)
-      : inverse_(1.0 / (core_radius * core_radius)), offset_(1e-30 * core_radius * core_radius) {}
+      : inverse_(1.0 / (core_radius * core_radius)),
+        offset_(1e-30 * core_radius * core_radius),
+        near_field_(one_minus_exponential_is_one * core_radius * core_radius) {}
+
+  /// In m².
+  KOKKOS_FORCEINLINE_FUNCTION double near_field() const { return near_field_; }
 
   /// Turns 0/0 at r = 0 into 0, which r⊥ = 0 multiplies; a pair 1e-15 δ apart is not seen to change.
   KOKKOS_FORCEINLINE_FUNCTION double offset() const { return offset_; }
@@ -91,6 +101,7 @@ class LambOseenLaw {
 
   double inverse_;
   double offset_;
+  double near_field_;
 };
 
 }  // namespace kiln

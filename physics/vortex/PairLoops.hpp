@@ -31,6 +31,7 @@ struct VortexPoints {
 namespace pair_loops {
 
 KOKKOS_FORCEINLINE_FUNCTION double total(double x) { return x; }
+KOKKOS_FORCEINLINE_FUNCTION double least(double x) { return x; }
 
 template <class Scalar>
 KOKKOS_FORCEINLINE_FUNCTION Scalar load(const double* numbers) {
@@ -53,29 +54,40 @@ KOKKOS_FORCEINLINE_FUNCTION Scalar spread(double number) {
 #ifdef KILN_LANES
 inline double total(const Lanes& x) { return lane_sum(x); }
 
-/// Points from eight places, x and y apart. Whole points are loaded and transposed in registers, which takes half the
-/// instructions of gathering x and y one by one.
-inline VortexPoints<Lanes> gathered_lanes(const double* points, const LocalIndex* places) {
+/// Smallest of the lanes; what is not a number may or may not count.
+inline double least(const Lanes& x) {
+  const HalfLanes lower = __builtin_shufflevector(x, x, 0, 1, 2, 3);
+  const HalfLanes upper = __builtin_shufflevector(x, x, 4, 5, 6, 7);
+  const HalfLanes four = lower < upper ? lower : upper;
+  const HalfLanes swapped = __builtin_shufflevector(four, four, 2, 3, 0, 1);
+  const HalfLanes two = four < swapped ? four : swapped;
+  return two[0] < two[1] ? two[0] : two[1];
+}
+
+/// Eight points, x and y apart. Whole points are loaded and transposed in registers, which takes half the instructions
+/// of gathering x and y one by one.
+inline VortexPoints<Lanes> gathered_lanes(const double* points, const LocalIndex* offsets) {
   using Pair = double __attribute__((vector_size(2 * sizeof(double))));
   Pair p[lane_count];
-  for (int lane = 0; lane < lane_count; ++lane) __builtin_memcpy(&p[lane], points + 2 * places[lane], sizeof(Pair));
-  const HalfLanes p01 = __builtin_shufflevector(p[0], p[1], 0, 1, 2, 3);
-  const HalfLanes p23 = __builtin_shufflevector(p[2], p[3], 0, 1, 2, 3);
-  const HalfLanes p45 = __builtin_shufflevector(p[4], p[5], 0, 1, 2, 3);
-  const HalfLanes p67 = __builtin_shufflevector(p[6], p[7], 0, 1, 2, 3);
-  const Lanes lower = __builtin_shufflevector(p01, p23, 0, 1, 2, 3, 4, 5, 6, 7);
-  const Lanes upper = __builtin_shufflevector(p45, p67, 0, 1, 2, 3, 4, 5, 6, 7);
-  return {__builtin_shufflevector(lower, upper, 0, 2, 4, 6, 8, 10, 12, 14),
-          __builtin_shufflevector(lower, upper, 1, 3, 5, 7, 9, 11, 13, 15)};
+  for (int lane = 0; lane < lane_count; ++lane) __builtin_memcpy(&p[lane], points + offsets[lane], sizeof(Pair));
+  // Points 0, 2, 4, 6 and points 1, 3, 5, 7: x and y then part without crossing quarters.
+  const HalfLanes p02 = __builtin_shufflevector(p[0], p[2], 0, 1, 2, 3);
+  const HalfLanes p46 = __builtin_shufflevector(p[4], p[6], 0, 1, 2, 3);
+  const HalfLanes p13 = __builtin_shufflevector(p[1], p[3], 0, 1, 2, 3);
+  const HalfLanes p57 = __builtin_shufflevector(p[5], p[7], 0, 1, 2, 3);
+  const Lanes even = __builtin_shufflevector(p02, p46, 0, 1, 2, 3, 4, 5, 6, 7);
+  const Lanes odd = __builtin_shufflevector(p13, p57, 0, 1, 2, 3, 4, 5, 6, 7);
+  return {__builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14),
+          __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15)};
 }
 #endif
 
 template <class Scalar>
-KOKKOS_FORCEINLINE_FUNCTION VortexPoints<Scalar> gathered(const double* points, const LocalIndex* places) {
+KOKKOS_FORCEINLINE_FUNCTION VortexPoints<Scalar> gathered(const double* points, const LocalIndex* offsets) {
   if constexpr (std::is_same_v<Scalar, double>) {
-    return {points[2 * *places], points[2 * *places + 1]};
+    return {points[*offsets], points[*offsets + 1]};
   } else {
-    return gathered_lanes(points, places);
+    return gathered_lanes(points, offsets);
   }
 }
 
@@ -95,6 +107,29 @@ KOKKOS_FORCEINLINE_FUNCTION void share_divide(const Scalar& numerator, const Sca
   quotient[3] = over23 * d[2];
 }
 
+/// The law's fractions for s = r² + offset of four pairs, or lanes of pairs. Away from every vortex's core they are
+/// 1/s, which is most of them and spares the exponentials.
+template <class Scalar, class Law>
+KOKKOS_FORCEINLINE_FUNCTION void four_fractions(const Law& law, const Scalar (&s)[4], Scalar (&numerator)[4],
+                                                Scalar (&denominator)[4]) {
+  if constexpr (Law::has_near_field) {
+    const Scalar a = s[0] < s[1] ? s[0] : s[1];
+    const Scalar b = s[2] < s[3] ? s[2] : s[3];
+    if (pair_loops::least(Scalar(a < b ? a : b)) >= law.near_field()) {
+      for (int k = 0; k < 4; ++k) {
+        numerator[k] = Scalar{} + 1.0;
+        denominator[k] = s[k];
+      }
+      return;
+    }
+  }
+  for (int k = 0; k < 4; ++k) {
+    const KernelFraction<Scalar> q = law.fraction(s[k]);
+    numerator[k] = q.numerator;
+    denominator[k] = q.denominator;
+  }
+}
+
 /// Σ_j Γ_j q r⊥ at four targets, which share the loads of the vortices and, for each vortex, one divide.
 template <class Scalar, class Law>
 KOKKOS_INLINE_FUNCTION void sum_at_four(const Law& law, const VortexArrays& vortices, const double (&targets)[8],
@@ -109,14 +144,13 @@ KOKKOS_INLINE_FUNCTION void sum_at_four(const Law& law, const VortexArrays& vort
   for (LocalIndex j = 0; j < vortices.padded; j += vortex_lanes<Scalar>) {
     const Scalar xj = load<Scalar>(vortices.x + j);
     const Scalar yj = load<Scalar>(vortices.y + j);
-    Scalar dx[4], dy[4], numerator[4], denominator[4], quotient[4];
+    Scalar dx[4], dy[4], s[4], numerator[4], denominator[4], quotient[4];
     for (int t = 0; t < 4; ++t) {
       dx[t] = x[t] - xj;
       dy[t] = y[t] - yj;
-      const KernelFraction<Scalar> q = law.fraction(Scalar(dx[t] * dx[t] + (dy[t] * dy[t] + offset)));
-      numerator[t] = q.numerator;
-      denominator[t] = q.denominator;
+      s[t] = dx[t] * dx[t] + (dy[t] * dy[t] + offset);
     }
+    four_fractions(law, s, numerator, denominator);
     share_divide(load<Scalar>(vortices.circulation + j), denominator, quotient);
     for (int t = 0; t < 4; ++t) {
       const Scalar weight = quotient[t] * numerator[t];
@@ -143,18 +177,17 @@ KOKKOS_INLINE_FUNCTION void sum_over_list(const Law& law, const double* points, 
   Scalar u = {}, v = {};
   LocalIndex p = 0;
   for (; p + 4 * step <= count; p += 4 * step) {
-    Scalar dx[4], dy[4], numerator[4], denominator[4], quotient[4];
+    Scalar dx[4], dy[4], s[4], numerator[4], denominator[4], quotient[4];
     for (int g = 0; g < 4; ++g) {
       const VortexPoints<Scalar> j = gathered<Scalar>(points, sources + p + g * step);
       dx[g] = xi - j.x;
       dy[g] = yi - j.y;
-      const KernelFraction<Scalar> q = law.fraction(Scalar(dx[g] * dx[g] + (dy[g] * dy[g] + offset)));
-      numerator[g] = q.numerator * load<Scalar>(circulations + p + g * step);
-      denominator[g] = q.denominator;
+      s[g] = dx[g] * dx[g] + (dy[g] * dy[g] + offset);
     }
+    four_fractions(law, s, numerator, denominator);
     share_divide(spread<Scalar>(1.0), denominator, quotient);
     for (int g = 0; g < 4; ++g) {
-      const Scalar weight = quotient[g] * numerator[g];
+      const Scalar weight = quotient[g] * (numerator[g] * load<Scalar>(circulations + p + g * step));
       u -= weight * dy[g];
       v += weight * dx[g];
     }

@@ -20,10 +20,7 @@ class Patches final : public Vortices {
     Specification specification;
     specification.sections("patches", "the patches", std::move(patch));
     PatchGrid::add_entries(specification);
-    specification.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
-      if (!list.sublist("patches").isSublist("0"))
-        problems.push_back({"patches", "there is no patch", "at least 1", ""});
-    });
+
     return specification;
   }
 

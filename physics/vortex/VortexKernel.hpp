@@ -18,12 +18,11 @@ struct VortexArrays {
   LocalIndex padded;
 };
 
-/// A list of vortices for each target, by their places among `points`. Lists fill whole lanes, with vortices without
-/// circulation at their ends.
+/// A list of vortices for each target. Lists fill whole lanes, with vortices without circulation at their ends.
 struct VortexLists {
   const double* points;        ///< x and y of each source in m; the targets are the first ones
   const std::size_t* offsets;  ///< targets + 1
-  const LocalIndex* sources;   ///< of each pair
+  const LocalIndex* sources;   ///< of each pair: where among `points` the x of its source stands
   const double* circulations;  ///< of each pair, in m²/s
 };
 

@@ -149,11 +149,11 @@ void VortexModel::make_lists(const std::vector<GlobalIndex>& own_rows, const std
   for (std::size_t r = 0; r < own_rows.size(); ++r) {
     const std::size_t row = table_.row(own_rows[r]);
     for (std::size_t pair = table_.offsets[row]; pair < table_.offsets[row + 1]; ++pair) {
-      sources.push_back(local(table_.listed[pair]));
+      sources.push_back(2 * local(table_.listed[pair]));
       circulations.push_back(table_.listed_circulations[pair]);
     }
     // The row itself, without circulation, fills the last lanes.
-    sources.resize(padded(sources.size()), static_cast<LocalIndex>(r));
+    sources.resize(padded(sources.size()), 2 * static_cast<LocalIndex>(r));
     circulations.resize(sources.size(), 0.0);
     offsets.push_back(sources.size());
   }

@@ -20,8 +20,8 @@ namespace kiln {
 ///
 /// with circulations Γ that stay as they are, a regularised kernel K and the factor µ = circulation_scale. The state of
 /// a particle is its place; a particle does not move itself. Rows are dealt out to the ranks in blocks of ids; every
-/// particle is a source of every row. Sums run through the sources in the order of their ids, so that they do not
-/// depend on the number of ranks.
+/// particle is a source of every row. Sums run through the sources in the order of their ids: the number of ranks
+/// changes no more than their rounding.
 ///
 /// Evaluations write to work arrays the model keeps: one evaluation at a time.
 class VortexModel final : public Model, public PairwiseModel {

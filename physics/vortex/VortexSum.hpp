@@ -14,8 +14,8 @@ struct VortexTargets {
   LocalIndex count;
 };
 
-/// How the sum of every vortex at every target is formed. A target's velocity depends neither on the other targets nor
-/// on how they are dealt out to ranks.
+/// How the sum of every vortex at every target is formed. On the other targets, and on how they are dealt out to ranks,
+/// no more than the rounding of a target's velocity depends.
 class VortexSum {
  public:
   using Context = NoContext;

@@ -63,6 +63,15 @@ TEST(LambOseenLaw, SlopeIsRightWhereItsTermsCancel) {
   }
 }
 
+TEST(LambOseenLaw, IsOneOverTheSquareBeyondItsNearField) {
+  const LambOseenLaw law(0.3);
+  EXPECT_DOUBLE_EQ(law.near_field(), 40.0 * 0.09);
+  for (const bool lanes : {false, true}) {
+    EXPECT_EQ(one_minus_exponential_of(one_minus_exponential_is_one, lanes), 1.0);
+    EXPECT_LT(one_minus_exponential_of(35.0, lanes), 1.0);
+  }
+}
+
 TEST(LambOseenLaw, IsRegularAtTheVortexItself) {
   const LambOseenLaw law(0.1);
   const KernelSlope<double> q = law.slope(law.offset());

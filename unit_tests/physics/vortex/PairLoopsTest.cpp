@@ -71,11 +71,12 @@ void expect_plain_sums(const Law& law) {
   std::vector<LocalIndex> sources;
   std::vector<double> circulations;
   for (int j = 0; j < Scattered::count; ++j) {
-    sources.push_back((j * 5) % Scattered::count);
-    circulations.push_back(from.circulation[sources.back()]);
+    const LocalIndex source = (j * 5) % Scattered::count;
+    sources.push_back(2 * source);
+    circulations.push_back(from.circulation[source]);
   }
   while (sources.size() % vortex_multiple != 0) {
-    sources.push_back(3);
+    sources.push_back(2 * 3);
     circulations.push_back(0.0);
   }
   const auto listed = static_cast<LocalIndex>(sources.size());
@@ -117,11 +118,14 @@ void expect_plain_sums(const Law& law) {
 TEST(PairLoops, NumberByNumberAreThePlainSums) {
   expect_plain_sums<double>(RosenheadMooreLaw(0.1));
   expect_plain_sums<double>(LambOseenLaw(0.1));
+  expect_plain_sums<double>(LambOseenLaw(2.0));
 }
 
 TEST(PairLoops, LanesAreThePlainSums) {
   expect_plain_sums<VortexScalar>(RosenheadMooreLaw(0.1));
   expect_plain_sums<VortexScalar>(LambOseenLaw(0.1));
+  expect_plain_sums<VortexScalar>(LambOseenLaw(0.02));
+  expect_plain_sums<VortexScalar>(LambOseenLaw(2.0));
 }
 
 TEST(PairLoops, FourQuotientsOfOneDivide) {

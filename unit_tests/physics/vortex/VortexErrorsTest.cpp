@@ -100,7 +100,7 @@ TEST(VortexInput, MistakesAreCaughtByTheSpecification) {
   EXPECT_EQ(checked("0.2 m", "0.2 m"), nothing);
   expect_in("model.kernel.core_radius: '-0.1 m' is not above 0", checked("core_radius: 0.1 m", "core_radius: -0.1 m"));
   expect_in("model.kernel.core_radius", checked("core_radius: 0.1 m", "core_radius: .nan"));
-  expect_in("model.particles.patches: there is no patch; expected at least 1",
+  expect_in("model.particles.patches: an empty list is given; expected a list of blocks",
             checked("[{centre: [0 m, 1 m], radius: 0.5 m, circulation: 2 m^2/s}]", "[]"));
   expect_in("model.particles.spacing: is left out, and so is count; expected either",
             checked("    spacing: 0.2 m\n", ""));

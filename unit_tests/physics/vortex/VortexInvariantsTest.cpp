@@ -48,11 +48,12 @@ Invariants invariants_of(const VortexCase& vortex_case, const std::vector<double
   return result;
 }
 
+/// Largest over the whole run.
 struct Drift {
-  double linear;
-  double angular;
-  double hamiltonian;
-  double moved;  ///< largest displacement of a particle in m
+  double linear = 0.0;
+  double angular = 0.0;
+  double hamiltonian = 0.0;
+  double moved = 0.0;  ///< displacement of a particle in m
 };
 
 Drift drift(const VortexCase& vortex_case, const std::string& type, int steps) {
@@ -60,11 +61,24 @@ Drift drift(const VortexCase& vortex_case, const std::string& type, int steps) {
   FullOrder method(std::shared_ptr<Model>(vortex_case.model()), newton(JacobianForm::matrix_free, 1e-13),
                    krylov("gmres", 1e-6));
   const std::vector<double> start = gathered(*method.particles(), initial(method));
-  const std::vector<double> places = gathered(*method.particles(), run(method, type, end / steps, steps));
-  const Invariants before = invariants_of(vortex_case, start), after = invariants_of(vortex_case, places);
-  Drift result{std::max(std::abs(after.linear[0] - before.linear[0]), std::abs(after.linear[1] - before.linear[1])),
-               std::abs(after.angular - before.angular), std::abs(after.hamiltonian - before.hamiltonian), 0.0};
-  for (std::size_t i = 0; i < places.size(); ++i) result.moved = std::max(result.moved, std::abs(places[i] - start[i]));
+  const Invariants before = invariants_of(vortex_case, start);
+  const auto time_scheme = scheme(type, method, end / steps);
+  const VectorView x = initial(method);
+  time_scheme->start(x, 0.0);
+  Drift result;
+  for (int n = 0; n < steps; ++n) {
+    advance(*time_scheme, x, end / steps, n, n + 1);
+    const std::vector<double> places = gathered(*method.particles(), x);
+    const Invariants after = invariants_of(vortex_case, places);
+    for (int axis = 0; axis < 2; ++axis) {
+      result.linear = std::max(result.linear, std::abs(after.linear[axis] - before.linear[axis]));
+    }
+    result.angular = std::max(result.angular, std::abs(after.angular - before.angular));
+    result.hamiltonian = std::max(result.hamiltonian, std::abs(after.hamiltonian - before.hamiltonian));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      result.moved = std::max(result.moved, std::abs(places[i] - start[i]));
+    }
+  }
   return result;
 }
 

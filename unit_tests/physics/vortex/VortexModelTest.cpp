@@ -61,7 +61,9 @@ TEST(VortexModel, RateDoesNotDependOnTheNumberOfRanks) {
   for (const std::string& kernel : kernels) {
     const auto together = with_kernel(kernel).model(), single = with_kernel(kernel).model(alone());
     const std::vector<double> found = gathered(*together->rows(), rate_of(*together, initial_state_of(*together)));
-    EXPECT_EQ(found, gathered(*single->rows(), rate_of(*single, initial_state_of(*single)))) << kernel;
+    const std::vector<double> expected = gathered(*single->rows(), rate_of(*single, initial_state_of(*single)));
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-15) << kernel;
   }
 }
 
@@ -119,10 +121,10 @@ TEST(VortexPair, TurnsAtTheRegularisedAngularVelocity) {
     const double angular_velocity = (left + right) / (2.0 * pi) * q;
     const double period = 2.0 * pi / angular_velocity;
     for (const double part : {0.2, 1.0}) {
-      const Turned turned = after_a_turn(vortex_case, part * period, 200);
+      const Turned turned = after_a_turn(vortex_case, part * period, 400);
       const double expected = part < 1.0 ? 2.0 * pi * part : 0.0;
-      EXPECT_NEAR(turned.angle, expected, 1e-7) << kernel;
-      EXPECT_NEAR(turned.separation, separation, 1e-7) << kernel;
+      EXPECT_NEAR(turned.angle, expected, 2e-8) << kernel;
+      EXPECT_NEAR(turned.separation, separation, 2e-8) << kernel;
     }
     // A negative control: with the point vortices' angular velocity the angle would be off by far more.
     EXPECT_GT(std::abs(angular_velocity - (left + right) / (2.0 * pi * d2)), 1e-2 * angular_velocity);
@@ -164,21 +166,6 @@ TEST(VortexModel, ImplicitStepsWithEitherJacobianAgree) {
   const std::vector<double> diagonal = places_with(JacobianForm::diagonal);
   const std::vector<double> matrix_free = places_with(JacobianForm::matrix_free);
   for (std::size_t i = 0; i < diagonal.size(); ++i) EXPECT_NEAR(diagonal[i], matrix_free[i], 1e-10);
-}
-
-TEST(VortexModel, NewtonWithTheWholeJacobianConvergesInFewUpdates) {
-  VortexCase vortex_case;
-  vortex_case.particles = VortexCase::two_patches(0.4);
-  // A step long enough for the diagonal Jacobian to be of little help.
-  const auto iterations_with = [&](JacobianForm form) {
-    FullOrder method(std::shared_ptr<Model>(vortex_case.model()), newton(form, 1e-10), krylov("gmres"));
-    const auto trapezoidal = scheme("trapezoidal", method, 0.25);
-    const VectorView x = initial(method);
-    trapezoidal->start(x, 0.0);
-    return advance(*trapezoidal, x, 0.25, 0, 1)[0].iterations;
-  };
-  EXPECT_LE(iterations_with(JacobianForm::matrix_free), 5);
-  EXPECT_GT(iterations_with(JacobianForm::diagonal), 6);
 }
 
 }  // namespace

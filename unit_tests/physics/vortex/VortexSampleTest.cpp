@@ -35,13 +35,19 @@ std::vector<double> rate_at_rows(const Model& sample, std::vector<GlobalIndex> r
   return all;
 }
 
-TEST(VortexSample, GivesTheBitsOfTheWholeModel) {
+/// Rows go through the sums four at a time and share divides: others beside them round otherwise.
+void expect_same(const std::vector<double>& found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-15) << "entry " << i;
+}
+
+TEST(VortexSample, IsTheWholeModelToRoundOff) {
   const auto whole = VortexCase().model();
   const std::vector<double> expected =
       at_rows(gathered(*whole->rows(), rate_of(*whole, initial_state_of(*whole))), some_rows);
-  EXPECT_EQ(rate_at_rows(*whole->sampled(some_rows), some_rows), expected);
-  EXPECT_EQ(rate_at_rows(*whole->sampled(some_rows)->sampled({60, 3}), {60, 3}),
-            at_rows(gathered(*whole->rows(), rate_of(*whole, initial_state_of(*whole))), {60, 3}));
+  expect_same(rate_at_rows(*whole->sampled(some_rows), some_rows), expected);
+  expect_same(rate_at_rows(*whole->sampled(some_rows)->sampled({60, 3}), {60, 3}),
+              at_rows(gathered(*whole->rows(), rate_of(*whole, initial_state_of(*whole))), {60, 3}));
 }
 
 TEST(VortexSample, TakesParametersAlong) {
@@ -104,7 +110,7 @@ TEST(VortexSample, IsRestoredOnAnyNumberOfRanks) {
     ASSERT_TRUE(Registry<Model>::restorable(list));
     const auto restored = Registry<Model>::restore(list, {communicator}, file.group("model"));
     EXPECT_EQ(restored->rows()->getGlobalNumElements(), some_rows.size());
-    EXPECT_EQ(rate_at_rows(*restored, some_rows), expected);
+    expect_same(rate_at_rows(*restored, some_rows), expected);
     if (together) {
       const auto rows = static_cast<std::size_t>(local_size(*restored->rows()));
       EXPECT_GE(rows, some_rows.size() / everyone->getSize());
