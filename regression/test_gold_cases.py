@@ -54,8 +54,13 @@ class CasesTest(KilnTest):
         with ThreadPoolExecutor(4) as pool:
             described = list(pool.map(lambda component: self.printed("describe", component), components))
         for component, lines in zip(components, described):
-            header = next((line for line in lines if re.match(r"\s*key\s+type\s.*values", line)), None)
-            for line in lines if header else []:
+            header = None
+            for line in lines:
+                # A name may stand in several categories: each has a table, and a blank line lies between.
+                if not line or re.match(r"\s*key\s+type\s.*values", line):
+                    header = line
+                if not header or line == header:
+                    continue
                 key, kind = line.split()[0], line[header.index("type") :].split("  ")[0]
                 if kind not in ("choice", "true/false") or (component, key) in ELSEWHERE:
                     continue

@@ -20,7 +20,7 @@ COMPONENTS = {
     "linear solver": ["bicgstab", "cg", "gmres"],
     "material": ["316L", "constant", "formula", "table"],
     "method": ["fom", "galerkin", "gnat", "lspg", "ptrom"],
-    "model": ["sph heat"],
+    "model": ["sph heat", "vortex"],
     "observer": ["extremes", "fields", "probes"],
     "particles": ["file", "lattice"],
     "sampling": ["greedy"],
@@ -29,6 +29,9 @@ COMPONENTS = {
         "backward euler", "bdf2", "explicit euler", "heun", "linear multistep", "rk4", "ssp rk3", "trapezoidal",
     ],
     "trainer": ["procedure ii"],
+    "vortex kernel": ["lamb-oseen", "rosenhead-moore"],
+    "vortex sum": ["barnes-hut", "direct"],
+    "vortices": ["file", "pair", "patches", "random patches", "shear layer"],
 }
 
 

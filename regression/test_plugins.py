@@ -28,6 +28,11 @@ TWINS = {
     "plugin clustering": "per row",
     "plugin trainer": "procedure ii",
 }
+VORTEX_TWINS = {
+    "plugin vortices": "patches",
+    "plugin vortex kernel": "rosenhead-moore",
+    "plugin vortex sum": "barnes-hut",
+}
 CASE = """\
 title: every category
 PLUGINS
@@ -57,9 +62,26 @@ output:
   plugin_observer: {every: 1}
 """
 
+VORTEX_CASE = """\
+title: every category of vortices
+PLUGINS
+model:
+  type: vortex
+  particles:
+    type: plugin vortices
+    patches: [{centre: [0 m, 0 m], radius: 0.5 m, circulation: 1 m^2/s}]
+    count: 200
+  kernel: {type: plugin vortex kernel, core_radius: 0.2 m}
+  sum: {type: plugin vortex sum, opening: 0.7}
+time: {end: 1 s, step: 0.1 s, scheme: rk4}
+output:
+  directory: results
+  fields: {every: 5}
+"""
 
-def case(plugins="plugins: [libevery_category.so]"):
-    return CASE.replace("PLUGINS", plugins)
+
+def case(plugins="plugins: [libevery_category.so]", text=CASE):
+    return text.replace("PLUGINS", plugins)
 
 
 class PluginsTest(KilnTest):
@@ -97,7 +119,7 @@ class LoadingTest(PluginsTest):
             found.setdefault(origin, {})[name] = category
         self.assertEqual(set(found), {"built in", str(EVERY_CATEGORY.resolve())})
         names = found[str(EVERY_CATEGORY.resolve())]
-        self.assertEqual(set(names), {name.replace("_", " ") for name in TWINS})
+        self.assertEqual(set(names), {name.replace("_", " ") for name in TWINS | VORTEX_TWINS})
         # One of every category there is.
         self.assertEqual(sorted(names.values()), sorted(set(found["built in"].values())))
 
@@ -133,6 +155,19 @@ class LoadingTest(PluginsTest):
             self.assertEqual(set(mine), set(theirs))
             for name, values in mine.items():
                 self.assertEqual(values.tobytes(), theirs[name].tobytes(), name)
+
+    def test_every_category_of_vortices_gives_the_bits_of_its_built_in_twin(self):
+        shutil.copy(EVERY_CATEGORY, self.folder)
+        self.write(case(text=VORTEX_CASE))
+        text = case("", VORTEX_CASE)
+        for name, twin in VORTEX_TWINS.items():
+            self.assertIn(name, text)
+            text = text.replace(name, twin)
+        self.write(text.replace("directory: results", "directory: twins"), "twins.yaml")
+        for ranks in (1, 2):
+            self.works("run", "case.yaml", "--quiet", ranks=ranks)
+            self.works("run", "twins.yaml", "--quiet", ranks=ranks)
+            self.works("compare", "results/fom/run.h5", "twins/fom/run.h5", "--tolerance", "0")
 
     def test_the_report_names_the_plugins_with_their_sha256(self):
         shutil.copy(EVERY_CATEGORY, self.folder)

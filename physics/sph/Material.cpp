@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "framework/files/CsvColumns.hpp"
 #include "framework/registry/Registry.hpp"
-#include "physics/sph/Csv.hpp"
 
 namespace kiln {
 namespace {
@@ -62,7 +62,7 @@ class TableMaterial final : public Material {
   TableMaterial(const Teuchos::ParameterList& list, const Context& context) {
     const auto file = list.get<std::string>("path");
     const std::vector<std::string> columns = {"temperature", "conductivity", "specific heat", "density"};
-    const Csv csv = read_csv(file, columns, {}, *context.communicator);
+    const CsvColumns csv = read_csv_columns(file, columns, {}, *context.communicator);
     temperatures_ = csv.values[csv.find(columns[0])];
     for (std::size_t i = 0; i < temperatures_.size(); ++i) {
       if (i > 0 && !(temperatures_[i] > temperatures_[i - 1])) {

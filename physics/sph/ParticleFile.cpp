@@ -4,9 +4,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "framework/files/CsvColumns.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/registry/Registry.hpp"
-#include "physics/sph/Csv.hpp"
 #include "physics/sph/Particles.hpp"
 
 namespace kiln {
@@ -83,7 +83,7 @@ class ParticleFile final : public Particles {
 
  private:
   Columns csv_columns() const {
-    const Csv csv = read_csv(path_, {"x", "y", "z"}, {"volume", "area"}, *communicator_);
+    const CsvColumns csv = read_csv_columns(path_, {"x", "y", "z"}, {"volume", "area"}, *communicator_);
     const auto column = [&csv](const std::string& name) {
       const int found = csv.find(name);
       return found < 0 ? std::vector<double>() : csv.values[found];

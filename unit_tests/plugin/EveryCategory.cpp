@@ -13,6 +13,9 @@
 #include "physics/sph/Kernel.hpp"
 #include "physics/sph/Material.hpp"
 #include "physics/sph/Particles.hpp"
+#include "physics/vortex/VortexKernelOf.hpp"
+#include "physics/vortex/VortexSum.hpp"
+#include "physics/vortex/Vortices.hpp"
 #include "rom/clustering/PerRow.hpp"
 #include "rom/sampling/Greedy.hpp"
 #include "rom/training/ProcedureTwo.hpp"
@@ -79,6 +82,37 @@ class PluginHeatSource : public HeatSource {
   double flux_;
 };
 
+class PluginVortices : public Vortices {
+ public:
+  static Specification specification() { return catalogue::find("vortices", "patches", "").specification(); }
+  PluginVortices(const Teuchos::ParameterList& list, const Context& context)
+      : vortices_(built_in<Vortices>("patches", list, context)) {}
+  VortexCloud cloud() const override { return vortices_->cloud(); }
+
+ private:
+  std::unique_ptr<Vortices> vortices_;
+};
+
+class PluginVortexSum : public VortexSum {
+ public:
+  static Specification specification() { return catalogue::find("vortex sum", "barnes-hut", "").specification(); }
+  PluginVortexSum(const Teuchos::ParameterList& list, const Context& context)
+      : sum_(built_in<VortexSum>("barnes-hut", list, context)) {}
+  void velocities(const VortexKernel& kernel, const VortexArrays& vortices, const VortexTargets& targets, double factor,
+                  double* velocities) override {
+    sum_->velocities(kernel, vortices, targets, factor, velocities);
+  }
+
+ private:
+  std::unique_ptr<VortexSum> sum_;
+};
+
+/// A law of its own, for which the sums are compiled here.
+class PluginLaw : public RosenheadMooreLaw {
+ public:
+  using RosenheadMooreLaw::RosenheadMooreLaw;
+};
+
 struct PluginScheme : LinearMultistep {
   static Specification specification() { return {}; }
   PluginScheme(const Teuchos::ParameterList&, const Context& context)
@@ -90,6 +124,9 @@ KILN_REGISTER(Kernel, PluginKernel, "plugin kernel", "as 'cubic spline'");
 KILN_REGISTER(Material, PluginMaterial, "plugin material", "as '316L'");
 KILN_REGISTER(Particles, PluginParticles, "plugin particles", "as 'lattice'");
 KILN_REGISTER(HeatSource, PluginHeatSource, "plugin heat source", "as 'uniform flux'");
+KILN_REGISTER(Vortices, PluginVortices, "plugin vortices", "as 'patches'");
+KILN_REGISTER(VortexKernel, CoreKernel<PluginLaw>, "plugin vortex kernel", "as 'rosenhead-moore'");
+KILN_REGISTER(VortexSum, PluginVortexSum, "plugin vortex sum", "as 'barnes-hut'");
 KILN_REGISTER(TimeScheme, PluginScheme, "plugin scheme", "as 'backward euler'");
 KILN_REGISTER(LinearSolver, Gmres, "plugin solver", "as 'gmres'");
 KILN_REGISTER(Method, FullOrder, "plugin method", "as 'fom'");

@@ -9,7 +9,7 @@ namespace kiln {
 
 /// Numbers of a comma-separated file whose first line names the columns. Empty lines and lines that start with '#' are
 /// skipped.
-struct Csv {
+struct CsvColumns {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> values;  ///< one vector a column
   std::vector<int> lines;                   ///< line of each row in the file, 1-based
@@ -20,7 +20,7 @@ struct Csv {
 
 /// Reads the file on rank 0 for all. Every column must be one of `required` or `optional`, every value a finite number.
 /// Throws FileError that names the line. Collective.
-Csv read_csv(const std::string& file, const std::vector<std::string>& required,
-             const std::vector<std::string>& optional, const Communicator& communicator);
+CsvColumns read_csv_columns(const std::string& file, const std::vector<std::string>& required,
+                            const std::vector<std::string>& optional, const Communicator& communicator);
 
 }  // namespace kiln

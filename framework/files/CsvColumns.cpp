@@ -1,4 +1,4 @@
-#include "physics/sph/Csv.hpp"
+#include "framework/files/CsvColumns.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -61,15 +61,15 @@ double number(std::string_view cell, const std::string& file, int line, const st
 
 }  // namespace
 
-int Csv::find(const std::string& column) const {
+int CsvColumns::find(const std::string& column) const {
   const auto found = std::find(columns.begin(), columns.end(), column);
   return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
 }
 
-Csv read_csv(const std::string& file, const std::vector<std::string>& required,
-             const std::vector<std::string>& optional, const Communicator& communicator) {
+CsvColumns read_csv_columns(const std::string& file, const std::vector<std::string>& required,
+                            const std::vector<std::string>& optional, const Communicator& communicator) {
   const std::string text = text_of(file, communicator);
-  Csv csv;
+  CsvColumns csv;
   int line = 0;
   for (std::size_t at = 0; at < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
