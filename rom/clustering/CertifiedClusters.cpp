@@ -39,13 +39,13 @@ class NodeMotion {
   NodeMotion(const Points& points, const ClusterTree& tree, const std::vector<double>& weights, std::size_t components)
       : points_(points), tree_(tree), weights_(weights), components_(components), nodes_(tree.nodes.size()) {}
 
-  /// Whether size/distance < opening at all moments for a target with this trajectory.
-  bool accepted(const double* target, std::size_t node, double opening) {
+  /// Whether size/√(distance² + smooth²) < opening at all moments for a target with this trajectory.
+  bool accepted(const double* target, std::size_t node, double opening, double smooth) {
     const Motion& motion = of(node);
     for (std::size_t moment = 0; moment < motion.sides.size(); ++moment) {
       const std::size_t at = moment * components_;
-      const double distance = std::sqrt(squared_distance(target + at, &motion.means[at], components_));
-      if (!(motion.sides[moment] < opening * distance)) return false;
+      const double squared = squared_distance(target + at, &motion.means[at], components_) + smooth * smooth;
+      if (!(motion.sides[moment] < opening * std::sqrt(squared))) return false;
     }
     return true;
   }
@@ -91,12 +91,20 @@ Specification CertifiedClusters::specification() {
   s.real("opening", "a cluster is taken where its size is less than this times its distance at all moments")
       .above(0)
       .defaults_to(0.5);
+  s.real("smooth",
+         "length over which a source may move without its pair term changing much, as within a core radius; distances "
+         "count as at least that, so that the number of clusters stops growing with the number of particles")
+      .at_least(0)
+      .defaults_to(0.0);
   s.integer("leaf", "most particles of a node that is not cut in two").at_least(1).defaults_to(1);
   return s;
 }
 
 CertifiedClusters::CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&)
-    : path_(list.name()), opening_(list.get<double>("opening")), leaf_(list.get<int>("leaf")) {}
+    : path_(list.name()),
+      opening_(list.get<double>("opening")),
+      smooth_(list.isParameter("smooth") ? list.get<double>("smooth") : 0.0),
+      leaf_(list.get<int>("leaf")) {}
 
 SourceClusters CertifiedClusters::clusters(const PairWeights& pairs, const SourceMotion& motion) const {
   const SharedSources sources(pairs, path_);
@@ -115,7 +123,7 @@ SourceClusters CertifiedClusters::clusters(const PairWeights& pairs, const Sourc
   }
   NodeMotion nodes(points, tree, sources.weights, motion.components);
   return shared_clusters(pairs, sources, tree, Shares::by_weight, [&](std::size_t row, std::size_t node) {
-    return nodes.accepted(target_points[row], node, opening_);
+    return nodes.accepted(target_points[row], node, opening_, smooth_);
   });
 }
 

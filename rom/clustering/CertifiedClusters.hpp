@@ -9,8 +9,9 @@ namespace kiln {
 /// Clusters that are far enough from the rows that use them at every moment of the training. A tree of the
 /// trajectories, for each sign of the weights one, cuts a node across its widest direction half way. A row takes a node
 /// where at all moments the widest side of the box around its members is less than `opening` times the distance from
-/// the row to their mean. Means are weighted by |w|, so that a cluster's first moment is its members': what is left is
-/// of second order in size/distance. For weights that do not depend on the row.
+/// the row to their mean, or than √(distance² + smooth²), where pair terms are regular at short distance. Means are
+/// weighted by |w|, so that a cluster's first moment is its members': what is left is of second order in size/distance.
+/// For weights that do not depend on the row.
 class CertifiedClusters : public SourceClustering {
  public:
   static Specification specification();
@@ -20,7 +21,7 @@ class CertifiedClusters : public SourceClustering {
 
  private:
   std::string path_;
-  double opening_;
+  double opening_, smooth_;
   std::size_t leaf_;
 };
 

@@ -121,12 +121,11 @@ void LearnWindows::add_clusters(std::vector<WindowReduction>& windows, const std
 
 void LearnWindows::check(const WindowReduction& window) {
   if (window.gappy_operator.smallest_singular_value >= small_sigma) return;
-  warnings_.push_back(
-      fmt::format("the smallest singular value of PΦ_r is {:.2e} in the window that ends at {:g} s: the hyper-reduced "
-                  "residual may amplify what the residual basis misses by {:.0f}; take more samples or fewer residual "
-                  "modes",
-                  window.gappy_operator.smallest_singular_value, window.end,
-                  1.0 / window.gappy_operator.smallest_singular_value));
+  warnings_.push_back(fmt::format(
+      "the smallest singular value of PΦ_r is {:.2e} in the window that ends at {:g} s: the hyper-reduced "
+      "residual may amplify what the residual basis misses by {:.0f}; take more samples or fewer residual "
+      "modes",
+      window.gappy_operator.smallest_singular_value, window.end, 1.0 / window.gappy_operator.smallest_singular_value));
 }
 
 std::vector<WindowReduction> LearnWindows::learn(const std::vector<int>& ends, std::vector<Pod> bases,

@@ -14,8 +14,8 @@
 
 namespace kiln {
 
-/// The third stage of procedure II: marches LSPG without hyper-reduction through the time windows, at every point that is
-/// learnt from, and learns each window's sample mesh from the residuals it meets there.
+/// The third stage of procedure II: marches LSPG without hyper-reduction through the time windows, at every point that
+/// is learnt from, and learns each window's sample mesh from the residuals it meets there.
 class LearnWindows {
  public:
   struct Settings {
@@ -28,8 +28,8 @@ class LearnWindows {
   /// `lspg`: on all rows, with the bases of the windows.
   LearnWindows(const Settings& settings, const FullOrderRuns& full_order, PetrovGalerkin& lspg);
 
-  /// `ends`: steps at which windows end; `bases`: one a window. Adds residual_basis, sample_meshes, clusters and lspg to
-  /// `facts`. Collective.
+  /// `ends`: steps at which windows end; `bases`: one a window. Adds residual_basis, sample_meshes, clusters and lspg
+  /// to `facts`. Collective.
   std::vector<WindowReduction> learn(const std::vector<int>& ends, std::vector<Pod> bases, nlohmann::json& facts);
   /// What is to be told of the sample meshes.
   const std::vector<std::string>& warnings() const { return warnings_; }
