@@ -160,7 +160,7 @@ def times_over_cores(results, folder, measure, number, label):
             everything.update(ranks)
             colour = "k" if case.setting is None else COLOURS[case.setting]
             machine = case.run.report["provenance"]["cores"]
-            marker = "X" if case.printed else {"fom": "o", "gnat": "s", "lspg": "^", "galerkin": "v"}[case.method]
+            marker = "X" if case.printed else {"fom": "o", "ptrom": "D", "gnat": "s", "lspg": "^", "galerkin": "v"}[case.method]
             style = ":" if case.printed else "--" if case.tolerance == "1e-2" else "-"
             words = [METHOD_TITLES[case.method], SETTING_TITLES.get(case.setting, ""), case.tolerance or "",
                      "as printed" if case.printed else ""]

@@ -14,12 +14,12 @@ from summary import compare_runs, run_figures
 
 SETTINGS = ("published_case_1", "published_case_2", "kiln")
 SETTING_TITLES = {"published_case_1": "Case 1", "published_case_2": "Case 2", "kiln": "Kiln"}
-METHODS = ("gnat", "lspg", "galerkin")
-METHOD_TITLES = {"fom": "full order", "gnat": "GNAT", "lspg": "LSPG", "galerkin": "Galerkin"}
+METHODS = ("ptrom", "gnat", "lspg", "galerkin")
+METHOD_TITLES = {"fom": "full order", "ptrom": "PTROM", "gnat": "GNAT", "lspg": "LSPG", "galerkin": "Galerkin"}
 
 NAME = re.compile(
     r"experiment-(?P<experiment>\d+)/(?:full-order|(?:kiln|published-(?P<case>\d+))/"
-    r"(?P<method>training|gnat|lspg|galerkin)(?P<printed>-as-printed)?(?:-(?P<tolerance>[0-9.e-]+))?)$"
+    r"(?P<method>training|ptrom|gnat|lspg|galerkin)(?P<printed>-as-printed)?(?:-(?P<tolerance>[0-9.e-]+))?)$"
 )
 
 
@@ -140,8 +140,11 @@ class Results:
         return case.tolerance or ""
 
     def best_gnat(self, experiment, setting):
-        """The complete GNAT case that saves most wall time, or None."""
-        found = [case for case in self.find(experiment, setting, "gnat") if not case.printed and self.summary(case)]
+        return self.best(experiment, setting, "gnat")
+
+    def best(self, experiment, setting, method):
+        """The complete case of a method that saves most wall time, or None."""
+        found = [case for case in self.find(experiment, setting, method) if not case.printed and self.summary(case)]
         return max(found, key=lambda case: self.summary(case)["speedup"]["wall"], default=None)
 
     def over_ranks(self, case):
