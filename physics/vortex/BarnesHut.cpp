@@ -68,7 +68,7 @@ class BarnesHut final : public VortexSum {
 
  private:
   static constexpr double default_opening = 0.5;
-  static constexpr int default_leaf = 16;
+  static constexpr int default_leaf = 32;
   static constexpr int leaves_a_group = 2;
 
   void sum_at(const QuadtreeNode& group, const VortexKernel& kernel, const double* points, double factor,

@@ -26,7 +26,7 @@ struct VortexCase {
   static Teuchos::ParameterList block(const std::string& type) {
     return Teuchos::ParameterList("model.particles").set("type", type);
   }
-  /// Two unequal patches of opposite signs: 300 particles for a spacing of 0.21 m.
+  /// Two unequal patches of opposite signs: about 250 particles for a spacing of 0.21 m.
   static Teuchos::ParameterList two_patches(double spacing) {
     Teuchos::ParameterList list = block("patches");
     Teuchos::ParameterList& patches = list.sublist("patches").setName("model.particles.patches");
