@@ -7,13 +7,14 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Seal.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/report/RunReport.hpp"
 
 namespace kiln {
 namespace {
 
-constexpr long long format = 1;
+constexpr long long format = 2;
 
 /// First line in which two texts differ, as "'a' there, 'b' here".
 std::string first_difference(const std::string& there, const std::string& here) {
@@ -53,7 +54,10 @@ void Checkpoint::observe(const Moment& moment) {
     scheme_.save(scheme);
     hdf5::Group method = checkpoint.create_group("method");
     method_.save(method);
+    // A disk that is full says so here or never: closing is silent.
+    checkpoint.flush();
   }
+  hdf5::seal(path.temporary(), *communicator_);
   path.commit();
   ++written_;
 }
@@ -63,13 +67,15 @@ void Checkpoint::finish(RunReport& report) {
 }
 
 int Checkpoint::restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
-                        TimeScheme& scheme, VectorView x, const Teuchos::RCP<const Communicator>& communicator) {
+                        TimeScheme& scheme, VectorView x, int last_step,
+                        const Teuchos::RCP<const Communicator>& communicator) {
   const std::string path = file(folder).string();
   const hdf5::File checkpoint = hdf5::File::read(path, communicator);
   if (checkpoint.integer("format") != format) {
     throw FileError(path, "attribute format", fmt::format("version {}", checkpoint.integer("format")),
                     fmt::format("version {}, which this Kiln writes", format));
   }
+  checkpoint.require_seal();
   const std::string saved = checkpoint.text("identity");
   if (saved != identity) {
     throw FileError(path, "", "is the checkpoint of another run: " + first_difference(saved, identity),
@@ -79,7 +85,7 @@ int Checkpoint::restore(const std::filesystem::path& folder, const std::string& 
   // The scheme evaluates states and rates at the rows, which the method must have found again by then.
   method.restore(checkpoint.group("method"));
   scheme.restore(checkpoint.group("scheme"));
-  return static_cast<int>(checkpoint.integer("step"));
+  return static_cast<int>(checkpoint.integer("step", 0, last_step));
 }
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #include "framework/driver/CommandLine.hpp"
@@ -20,6 +21,8 @@ void use_one_blas_thread() {
 
 int main(int argc, char** argv) {
   use_one_blas_thread();
+  // A limit on a file's size is told like a full disk, not by the signal's death.
+  std::signal(SIGXFSZ, SIG_IGN);
   // The command line is Kiln's alone: Kokkos would answer --help with its own page and take unprefixed flags of its
   // own. Its settings come from KOKKOS_… environment variables.
   int library_argc = 1;

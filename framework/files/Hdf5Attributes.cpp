@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
@@ -157,6 +160,23 @@ double Group::real(const std::string& attribute) const {
 
 long long Group::integer(const std::string& attribute) const {
   return read_number<long long>(*node_, attribute, H5T_NATIVE_LLONG, false, "an integer");
+}
+
+double Group::finite_real(const std::string& attribute) const {
+  const double value = real(attribute);
+  if (!std::isfinite(value)) {
+    throw FileError(file(), place(*node_, "", attribute), fmt::format("is {}", value), "a finite number");
+  }
+  return value;
+}
+
+long long Group::integer(const std::string& attribute, long long lowest, long long highest) const {
+  const long long value = integer(attribute);
+  if (value < lowest || value > highest) {
+    throw FileError(file(), place(*node_, "", attribute), fmt::format("is {}", value),
+                    fmt::format("{} to {}", lowest, highest));
+  }
+  return value;
 }
 
 std::string Group::text_of(const std::string& dataset, const std::string& attribute) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 namespace kiln {
@@ -22,15 +23,19 @@ InputError Mistakes::error() const {
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](const Mistake& a, const Mistake& b) { return position(a) < position(b); });
   std::vector<Problem> problems;
+  std::set<std::pair<std::string, std::string>> told;
   for (Mistake& mistake : sorted) {
     std::string& path = mistake.problem.path;
     const std::string place = to_string(mistake.location);
     path = path.empty() ? place : fmt::format("{}: {}", place, path);
     // A file that is included twice tells its mistakes once.
-    const bool told = std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
-      return problem.path == path && problem.found == mistake.problem.found;
-    });
-    if (!told) problems.push_back(std::move(mistake.problem));
+    if (told.emplace(path, mistake.problem.found).second) problems.push_back(std::move(mistake.problem));
+  }
+  if (problems.size() > most_told) {
+    const std::string file = files_.empty() ? "" : files_.front();
+    const Problem rest{file, fmt::format("{} more mistakes", problems.size() - most_told), {}, {}};
+    problems.resize(most_told);
+    problems.push_back(rest);
   }
   return InputError(std::move(problems));
 }

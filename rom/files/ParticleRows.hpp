@@ -26,7 +26,8 @@ struct ParticleTable {
                               const MatrixView& reference, const MatrixView& modes, int components);
   /// Datasets ids, positions, reference and modes of a group.
   void write(hdf5::Group& group) const;
-  static ParticleTable read(const hdf5::Group& group, int components, int modes);
+  /// `ids` are the particles of the group, checked.
+  static ParticleTable read(const hdf5::Group& group, std::vector<GlobalIndex> ids, int components, int modes);
 
   /// Place of a particle in the table; −1 if it is not there.
   std::ptrdiff_t find(GlobalIndex id) const;

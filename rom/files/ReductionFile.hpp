@@ -27,9 +27,13 @@ class ReductionFile {
   /// The file the block `method` names, or reduction.h5 in `output.directory`.
   static std::filesystem::path path(const Teuchos::ParameterList& input);
 
-  /// Opens the file of a run and checks that it belongs to the input's model. Throws FileError. Collective.
+  /// Opens the file of a run and checks that it is whole and belongs to the input's model. Throws FileError. Collective.
   ReductionFile(const Teuchos::ParameterList& input, const Teuchos::RCP<const Communicator>& communicator);
 
+  /// Throws FileError unless the file is of a model with so many particles and components.
+  void require_size(const Map& rows, std::size_t components) const;
+  /// Throws FileError unless a sampled model has so many components.
+  void require_components(std::size_t components) const;
   /// Throws FileError unless time step and scheme of the input are those of the training.
   void require_time(const Teuchos::ParameterList& input) const;
 
@@ -58,6 +62,8 @@ class ReductionFile {
  private:
   hdf5::Group window(std::size_t number) const;
   std::vector<TimeWindow> read_windows() const;
+  /// Ids of particles, ascending, at least one.
+  std::vector<GlobalIndex> ids(const hdf5::Group& group, const std::string& name) const;
 
   hdf5::File file_;
   int components_;

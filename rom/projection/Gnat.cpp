@@ -32,6 +32,7 @@ class SampledModels {
     } else {
       model = sampled_or_masked(full_, mesh.rows);
     }
+    reduction_.require_components(model->fields().size());
     if (model->rows()->getGlobalNumElements() != mesh.rows.size()) {
       throw FileError(reduction_.root().file(), fmt::format("windows/{}", window),
                       fmt::format("its sampled model has {} rows", model->rows()->getGlobalNumElements()),

@@ -13,6 +13,7 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Seal.hpp"
 #include "framework/method/FullOrder.hpp"
 #include "framework/model/Halo.hpp"
 #include "framework/model/MaskedModel.hpp"
@@ -375,6 +376,7 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
     written.attribute("trial", errors.facts().dump());
     written.flush();
   }
+  hdf5::seal(path.temporary(), *communicator_);
   path.commit();
 }
 
