@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Tpetra_Map.hpp>
 #include <sstream>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Reserve.hpp"
 #include "framework/files/Seal.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/report/RunReport.hpp"
@@ -15,6 +17,9 @@ namespace kiln {
 namespace {
 
 constexpr long long format = 2;
+
+/// For HDF5's own account of what a checkpoint holds.
+constexpr std::uint64_t smallest_room = 65536;
 
 /// First line in which two texts differ, as "'a' there, 'b' here".
 std::string first_difference(const std::string& there, const std::string& here) {
@@ -38,13 +43,14 @@ Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, std::string i
       scheme_(scheme),
       communicator_(context.communicator),
       folder_(context.folder),
-      identity_(std::move(identity)) {}
+      identity_(std::move(identity)),
+      room_(smallest_room + identity_.size() + 3 * sizeof(double) * method_.coordinates()->getGlobalNumElements()) {}
 
 void Checkpoint::observe(const Moment& moment) {
   if (!moment.checkpoint) return;
   AtomicPath path(file(folder_), communicator_);
   {
-    hdf5::File checkpoint = hdf5::File::create(path.temporary(), communicator_);
+    hdf5::File checkpoint = hdf5::create_with_room(path.temporary(), room_, communicator_);
     checkpoint.attribute("format", format);
     checkpoint.attribute("identity", identity_);
     checkpoint.attribute("step", moment.step);
@@ -60,6 +66,10 @@ void Checkpoint::observe(const Moment& moment) {
   hdf5::seal(path.temporary(), *communicator_);
   path.commit();
   ++written_;
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file(folder_), unknown);
+  // An earlier state more or less, as a scheme starts, fits in as well.
+  if (!unknown) room_ = size + size / 4;
 }
 
 void Checkpoint::finish(RunReport& report) {

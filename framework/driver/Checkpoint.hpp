@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -35,6 +36,7 @@ class Checkpoint : public Observer {
   Teuchos::RCP<const Communicator> communicator_;
   std::filesystem::path folder_;
   std::string identity_;
+  std::uint64_t room_;  ///< bytes that the next one may take
   int written_ = 0;
 };
 

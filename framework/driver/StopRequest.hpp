@@ -15,8 +15,9 @@ class Stopped : public std::runtime_error {
 };
 
 /// Notices SIGTERM (what batch systems send before they kill) and SIGINT (Ctrl-C) while it lives, so that a time loop
-/// can end in order; a second signal ends the program at once. Ranks may hear of a signal in different steps: they agree
-/// on one, as often as costs next to nothing and no signal waits longer than about a quarter of a second or a step.
+/// can end in order; a second signal ends the program at once. Ranks may hear of a signal in different steps: they
+/// agree on one, as often as costs next to nothing and no signal waits longer than about a quarter of a second or a
+/// step.
 class StopRequest {
  public:
   /// `first_step`: the step before the loop's first.

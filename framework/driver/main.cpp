@@ -2,10 +2,14 @@
 
 #include <dlfcn.h>
 
+#include <mpi.h>
+
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "framework/driver/CommandLine.hpp"
+#include "framework/files/Reserve.hpp"
 
 namespace {
 
@@ -15,6 +19,13 @@ void use_one_blas_thread() {
   if (std::getenv("OPENBLAS_NUM_THREADS") != nullptr || std::getenv("OMP_NUM_THREADS") != nullptr) return;
   const auto set_threads = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
   if (set_threads != nullptr) set_threads(1);
+}
+
+/// Without HDF5's farewell.
+[[noreturn]] void leave_at_once(int status) {
+  std::fflush(nullptr);
+  if (Tpetra::getDefaultComm()->getSize() > 1) MPI_Abort(MPI_COMM_WORLD, status);
+  std::_Exit(status);
 }
 
 }  // namespace
@@ -29,5 +40,7 @@ int main(int argc, char** argv) {
   char* library_arguments[] = {argv[0], nullptr};
   char** library_argv = library_arguments;
   Tpetra::ScopeGuard scope(&library_argc, &library_argv);
-  return kiln::command_line(argc, argv, Tpetra::getDefaultComm());
+  const int status = kiln::command_line(argc, argv, Tpetra::getDefaultComm());
+  if (kiln::hdf5::writing_failed()) leave_at_once(status);
+  return status;
 }

@@ -12,6 +12,7 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5Node.hpp"
 #include "framework/files/Hdf5Vet.hpp"
+#include "framework/files/Reserve.hpp"
 #include "framework/files/Seal.hpp"
 
 namespace kiln::hdf5 {
@@ -77,6 +78,8 @@ void Node::fail(const std::string& name, const std::string& found, const std::st
 }
 
 void Node::require(bool succeeded, const std::string& name, const std::string& done) const {
+  unsigned intent = H5F_ACC_RDONLY;
+  if (!succeeded && H5Fget_intent(file->id, &intent) >= 0 && (intent & H5F_ACC_RDWR) != 0) note_failed_writing();
   const std::string why = succeeded ? "" : reason();
   throw_together(communicator(), file->path,
                  succeeded
@@ -95,6 +98,10 @@ std::string reason() {
       },
       &text);
   H5Eclear2(H5E_DEFAULT);
+  // Of a failed write HDF5 tells addresses and line ends, too.
+  const std::size_t end = text.find(", buf = ");
+  if (end != std::string::npos) text.erase(end);
+  text.erase(std::remove(text.begin(), text.end(), '\n'), text.end());
   return text.empty() ? text : " (" + text + ")";
 }
 

@@ -105,8 +105,8 @@ class File : public Group {
  public:
   /// A new file, written by all ranks; replaces an existing one. Throws FileError.
   static File create(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
-  /// Throws FileError for a missing file and for one that is not HDF5, damaged or cut short. A sealed file (Seal.hpp) is
-  /// compared with its seal; any other is vetted (Hdf5Vet.hpp).
+  /// Throws FileError for a missing file and for one that is not HDF5, damaged or cut short. A sealed file (Seal.hpp)
+  /// is compared with its seal; any other is vetted (Hdf5Vet.hpp).
   static File read(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
   static File modify(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
   /// Throws FileError unless the file was opened by read() and carries a seal.

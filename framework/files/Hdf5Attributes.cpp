@@ -7,6 +7,7 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Hdf5Node.hpp"
+#include "framework/files/Reserve.hpp"
 
 namespace kiln::hdf5 {
 namespace {
@@ -35,6 +36,7 @@ void write_attribute(const Node& node, const std::string& owner, const std::stri
     const Id attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     written = attribute.valid() && H5Awrite(attribute, type, value) >= 0;
   }
+  if (!written) note_failed_writing();
   const std::string why = written ? "" : reason();
   throw_together(
       node.communicator(), node.file->path,

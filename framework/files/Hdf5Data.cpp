@@ -106,13 +106,15 @@ void require_values(const Node& node, const Dataset& dataset, const std::string&
   if (layout == H5D_VIRTUAL) return;
   std::size_t declared = H5Tget_size(type);
   bool overflow = false;
-  for (const std::size_t extent : dataset.shape) overflow = __builtin_mul_overflow(declared, extent, &declared) || overflow;
+  for (const std::size_t extent : dataset.shape)
+    overflow = __builtin_mul_overflow(declared, extent, &declared) || overflow;
   // No compression that makes sense saves more.
   constexpr std::size_t best_compression = 4096;
   const std::size_t stored = H5Dget_storage_size(dataset.id);
   const std::size_t most = layout == H5D_CHUNKED ? std::max<std::size_t>(stored, 1) * best_compression : stored;
   if (!overflow && declared <= most) return;
-  node.fail(name, "has shape " + shape_text(dataset.shape), fmt::format("values for all of it: there are {} bytes", stored));
+  node.fail(name, "has shape " + shape_text(dataset.shape),
+            fmt::format("values for all of it: there are {} bytes", stored));
 }
 
 void check_shape(const Node& node, const std::string& name, const std::vector<std::size_t>& found,

@@ -212,9 +212,9 @@ void check_segment(const std::string& path, const Segment& segment, const std::s
   std::ifstream file = open_file(path);
   const Hash hash = hash_of_part(file, path, segment.offset, segment.length);
   if (hash.low == segment.hash_low && hash.high == segment.hash_high) return;
-  throw FileError(path, place.empty() ? fmt::format("bytes {} to {}", segment.offset, segment.offset + segment.length)
-                                      : place,
-                  changed, intact);
+  throw FileError(
+      path, place.empty() ? fmt::format("bytes {} to {}", segment.offset, segment.offset + segment.length) : place,
+      changed, intact);
 }
 
 }  // namespace kiln::hdf5

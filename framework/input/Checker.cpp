@@ -79,8 +79,7 @@ void Checker::check_keys(const YamlNode& block, const Specification& specificati
     if (std::find(known.begin(), known.end(), pair.key) != known.end()) continue;
     std::string expected = known.empty() ? "no keys" : fmt::format("one of: {}", fmt::join(known, ", "));
     std::string meant = mistakes_.enough() ? "" : nearest(pair.key, known);
-    mistakes_.add(pair.location,
-                  {join(path, shown(pair.key)), "unknown key", std::move(expected), std::move(meant)});
+    mistakes_.add(pair.location, {join(path, shown(pair.key)), "unknown key", std::move(expected), std::move(meant)});
   }
 }
 

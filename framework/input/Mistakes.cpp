@@ -6,10 +6,13 @@
 #include <set>
 #include <tuple>
 
+#include "framework/input/TextCheck.hpp"
+
 namespace kiln {
 
 std::string to_string(const Location& location) {
-  return location.line == 0 ? location.file : fmt::format("{}:{}:{}", location.file, location.line, location.column);
+  const std::string file = printable(location.file);
+  return location.line == 0 ? file : fmt::format("{}:{}:{}", file, location.line, location.column);
 }
 
 void Mistakes::add(const Location& location, Problem problem) { mistakes_.push_back({location, std::move(problem)}); }
@@ -40,29 +43,33 @@ InputError Mistakes::error() const {
   return InputError(std::move(problems));
 }
 
-std::string shown(const std::string& text) {
-  constexpr std::size_t longest = 60;
+namespace {
+
+std::string escaped(const std::string& text, std::size_t longest) {
   std::string result;
   std::size_t characters = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues_character = (byte & 0xc0) == 0x80;
-    if (!continues_character && ++characters > longest) {
-      result += "...";
-      break;
-    }
-    if (c == '\n') {
+  for (std::size_t i = 0; i < text.size();) {
+    if (++characters > longest) return result + "...";
+    const std::size_t length = character_length(text, i);
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte == '\n') {
       result += "\\n";
-    } else if (c == '\t') {
+    } else if (byte == '\t') {
       result += "\\t";
-    } else if (byte < 0x20 || byte == 0x7f) {
+    } else if (length == 0 || byte < 0x20 || byte == 0x7f) {
       result += fmt::format("\\x{:02x}", byte);
     } else {
-      result += c;
+      result += text.substr(i, length);
     }
+    i += std::max<std::size_t>(1, length);
   }
   return result;
 }
+
+}  // namespace
+
+std::string printable(const std::string& text) { return escaped(text, text.size()); }
+std::string shown(const std::string& text) { return escaped(text, 60); }
 
 std::string in_quotes(const std::string& text) { return "'" + shown(text) + "'"; }
 

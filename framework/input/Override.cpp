@@ -44,7 +44,8 @@ void apply_override(const std::string& override_text, YamlNode& root, Mistakes& 
     return;
   }
   if (keys.size() > deepest_path) {
-    mistakes.add(place, {{}, fmt::format("a path of {} keys", keys.size()), fmt::format("at most {}", deepest_path), {}});
+    mistakes.add(place,
+                 {{}, fmt::format("a path of {} keys", keys.size()), fmt::format("at most {}", deepest_path), {}});
     return;
   }
   YamlNode value;

@@ -266,7 +266,8 @@ class TreeBuilder final : public YAML::EventHandler {
     } else if (merged.kind == YamlNode::Kind::map) {
       for (YamlPair& pair : merged.pairs) {
         if (into.pairs.size() > most_keys) {
-          return mistakes_.add(merged.location, {path(), fmt::format("more than {} keys in one block", most_keys), {}, {}});
+          return mistakes_.add(merged.location,
+                               {path(), fmt::format("more than {} keys in one block", most_keys), {}, {}});
         }
         if (into.find(pair.key) == nullptr) into.pairs.push_back(std::move(pair));
       }

@@ -85,9 +85,10 @@ QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Commu
   const double numbers = static_cast<double>(answers_.points.count()) * static_cast<double>(places_.size()) *
                          (static_cast<double>(span_.last_step) / every_ + 1.0);
   if (numbers * sizeof(double) > machine_memory()) {
-    throw InputError("queries", fmt::format("{} points and {} probes give {:.3g} numbers", answers_.points.count(),
-                                            places_.size(), numbers),
-                     "what this machine's memory holds; raise output.probes.every");
+    throw InputError(
+        "queries",
+        fmt::format("{} points and {} probes give {:.3g} numbers", answers_.points.count(), places_.size(), numbers),
+        "what this machine's memory holds; raise output.probes.every");
   }
   for (int step = 0; step <= span_.last_step; ++step) {
     if (!is_recorded(step)) continue;

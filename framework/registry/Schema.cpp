@@ -163,7 +163,9 @@ class Writer {
   }
 
   static Json of_length(Json schema, int length) {
-    if (length != 0) schema["minItems"] = schema["maxItems"] = length;
+    if (length == 0) return schema;
+    schema["minItems"] = length;
+    schema["maxItems"] = length;
     return schema;
   }
 
@@ -185,6 +187,11 @@ class Writer {
     return schema;
   }
 
+  static void add_case(Json& cases, const Json& condition, Json then) {
+    Json one = {{"if", condition}, {"then", std::move(then)}};
+    cases.push_back(std::move(one));
+  }
+
   /// A type by its name alone, or a block whose `type` says which keys it has.
   Json component(const Entry& entry, bool complete) {
     const std::vector<std::string> names = catalogue::names(entry.category);
@@ -196,7 +203,7 @@ class Writer {
         alone.push_back(name);
       }
       const Json has_type = {{"properties", {{"type", {{"const", name}}}}}, {"required", Json::array({"type"})}};
-      cases.push_back({{"if", has_type}, {"then", reference(entry.category, name, complete)}});
+      add_case(cases, has_type, reference(entry.category, name, complete));
     }
     Json object = {{"type", "object"}, {"properties", {{"type", {{"enum", names}}}}}};
     const Json without_type = {{"not", {{"required", Json::array({"type"})}}}};
@@ -204,15 +211,18 @@ class Writer {
       // The type may stand in an included file.
       std::vector<Json> any;
       for (const std::string& name : names) any.push_back(reference(entry.category, name, false));
-      if (!any.empty()) cases.push_back({{"if", without_type}, {"then", any_of(std::move(any))}});
+      if (!any.empty()) add_case(cases, without_type, any_of(std::move(any)));
     } else if (fallback != nullptr) {
-      cases.push_back({{"if", without_type}, {"then", reference(entry.category, *fallback, true)}});
+      add_case(cases, without_type, reference(entry.category, *fallback, true));
     } else {
       object["required"] = Json::array({"type"});
     }
     if (!cases.empty()) object["allOf"] = std::move(cases);
     std::vector<Json> forms;
-    if (!alone.empty()) forms.push_back({{"enum", alone}});
+    if (!alone.empty()) {
+      Json by_name = {{"enum", alone}};
+      forms.push_back(std::move(by_name));
+    }
     forms.push_back(std::move(object));
     if (fallback != nullptr || !complete) forms.push_back(null());
     return any_of(std::move(forms));
@@ -220,8 +230,7 @@ class Writer {
 
   /// A component's block, defined once for all places where it may stand.
   Json reference(const std::string& category, const std::string& name, bool complete) {
-    const std::string key =
-        fmt::format("{}-{}{}", block_key(category), block_key(name), complete ? "" : "-in-part");
+    const std::string key = fmt::format("{}-{}{}", block_key(category), block_key(name), complete ? "" : "-in-part");
     if (defined_.insert(key).second) {
       const Registration& registration = catalogue::find(category, name, "");
       Json schema = block(registration.specification(), complete, name);

@@ -92,7 +92,8 @@ Csv read_csv(const std::string& file, const std::vector<std::string>& required,
         const bool known = std::count(required.begin(), required.end(), name) != 0 ||
                            std::count(optional.begin(), optional.end(), name) != 0;
         if (!known || csv.find(name) >= 0) {
-          throw FileError(file, place, fmt::format("column {} is {}", in_quotes(name), known ? "there twice" : "not known"),
+          throw FileError(file, place,
+                          fmt::format("column {} is {}", in_quotes(name), known ? "there twice" : "not known"),
                           fmt::format("a first line with the columns {}{}{}", fmt::join(required, ", "),
                                       optional.empty() ? "" : " and, as wanted, ", fmt::join(optional, ", ")));
         }

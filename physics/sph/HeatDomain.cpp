@@ -44,16 +44,18 @@ double mean_neighbours(const std::vector<Point>& positions, double support) {
 
 void check_support(const ParticleCloud& cloud, const PairSettings& settings) {
   if (!(settings.support >= shortest_support) || !(settings.support <= farthest)) {
-    throw InputError(settings.path + ".smoothing_length", fmt::format("neighbours lie within 2h = {} m", settings.support),
+    throw InputError(settings.path + ".smoothing_length",
+                     fmt::format("neighbours lie within 2h = {} m", settings.support),
                      fmt::format("{} m to {} m", shortest_support, farthest));
   }
   const auto particles = static_cast<double>(cloud.positions.size());
   const double neighbours = mean_neighbours(cloud.positions, settings.support);
   constexpr double bytes_a_pair = sizeof(double) + sizeof(LocalIndex);
   if (neighbours > most_neighbours || particles * neighbours * bytes_a_pair > machine_memory()) {
-    throw InputError(settings.path + ".smoothing_length",
-                     fmt::format("about {:.3g} particles lie within 2h = {:.6g} m of one", neighbours, settings.support),
-                     fmt::format("at most {:g}, and pairs that fit into memory; is the spacing right?", most_neighbours));
+    throw InputError(
+        settings.path + ".smoothing_length",
+        fmt::format("about {:.3g} particles lie within 2h = {:.6g} m of one", neighbours, settings.support),
+        fmt::format("at most {:g}, and pairs that fit into memory; is the spacing right?", most_neighbours));
   }
 }
 
@@ -61,10 +63,10 @@ void check_masses(const ParticleCloud& cloud, const PairSettings& settings) {
   for (std::size_t id = 0; id < cloud.volumes.size(); ++id) {
     const double mass = settings.density * cloud.volumes[id];
     if (std::isnormal(mass) && mass > 0.0 && std::isfinite(cloud.heated_areas[id])) continue;
-    throw InputError(settings.path + ".particles",
-                     fmt::format("particle {} has the mass {} kg and the heated area {} m^2", id, mass,
-                                 cloud.heated_areas[id]),
-                     "a part of a size that double precision can tell");
+    throw InputError(
+        settings.path + ".particles",
+        fmt::format("particle {} has the mass {} kg and the heated area {} m^2", id, mass, cloud.heated_areas[id]),
+        "a part of a size that double precision can tell");
   }
 }
 

@@ -322,9 +322,11 @@ MaterialTable restored_table(const hdf5::Group& group) {
     throw FileError(table.file(), table.path() + "/properties", "has fewer than 2 rows", "a table of properties");
   }
   const double from = table.finite_real("from"), step = table.finite_real("step");
-  if (!(step > 0.0)) throw FileError(table.file(), table.path() + " attribute 'step'", fmt::format("is {}", step), "above 0");
+  if (!(step > 0.0))
+    throw FileError(table.file(), table.path() + " attribute 'step'", fmt::format("is {}", step), "above 0");
   if (!std::all_of(values.values.begin(), values.values.end(), [](double value) { return value > 0.0; })) {
-    throw FileError(table.file(), table.path() + "/properties", "holds values that are not above 0", "a table of properties");
+    throw FileError(table.file(), table.path() + "/properties", "holds values that are not above 0",
+                    "a table of properties");
   }
   return {from, step, values.values};
 }

@@ -119,7 +119,8 @@ ReductionFile::Rows ReductionFile::basis(const Map& particles) const {
     const std::size_t columns = windows_[w].size * components;
     // Before room is made for as many as are declared.
     if (shape.size() != 2 || shape[1] != columns) {
-      throw FileError(group.file(), group.path() + "/modes", fmt::format("has {} columns", shape.empty() ? 0 : shape.back()),
+      throw FileError(group.file(), group.path() + "/modes",
+                      fmt::format("has {} columns", shape.empty() ? 0 : shape.back()),
                       fmt::format("{}, its rank", columns));
     }
   }

@@ -27,7 +27,8 @@ class ReductionFile {
   /// The file the block `method` names, or reduction.h5 in `output.directory`.
   static std::filesystem::path path(const Teuchos::ParameterList& input);
 
-  /// Opens the file of a run and checks that it is whole and belongs to the input's model. Throws FileError. Collective.
+  /// Opens the file of a run and checks that it is whole and belongs to the input's model. Throws FileError.
+  /// Collective.
   ReductionFile(const Teuchos::ParameterList& input, const Teuchos::RCP<const Communicator>& communicator);
 
   /// Throws FileError unless the file is of a model with so many particles and components.

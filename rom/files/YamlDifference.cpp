@@ -16,9 +16,8 @@ using Entries = std::vector<std::pair<std::string, std::string>>;
 using Kind = YamlNode::Kind;
 
 bool is_list_of_scalars(const YamlNode& node) {
-  return node.kind == Kind::list && std::all_of(node.items.begin(), node.items.end(), [](const YamlNode& item) {
-           return item.kind == Kind::scalar;
-         });
+  return node.kind == Kind::list && std::all_of(node.items.begin(), node.items.end(),
+                                                [](const YamlNode& item) { return item.kind == Kind::scalar; });
 }
 
 /// Leaves with their paths: scalars, and lists of scalars as one text.

@@ -16,11 +16,13 @@ struct Run {
       : input(kiln::Input::read(kiln::fuzz::sound("tiny.yaml"), {"time.end=300 us"}, kiln::run_specification(),
                                 *kiln::fuzz::alone())),
         span(kiln::TimeSpan::of(input.list())),
-        method(kiln::Registry<kiln::Method>::create(input.list().sublist("method"), {input.list(), kiln::fuzz::alone()})),
+        method(
+            kiln::Registry<kiln::Method>::create(input.list().sublist("method"), {input.list(), kiln::fuzz::alone()})),
         scheme(kiln::Registry<kiln::TimeScheme>::create(input.list().sublist("time").sublist("scheme"),
                                                         {*method, span.step})),
         x("x", kiln::local_size(*method->coordinates())) {
-    const kiln::hdf5::File file = kiln::hdf5::File::read(kiln::fuzz::sound("results/fom/checkpoint.h5"), kiln::fuzz::alone());
+    const kiln::hdf5::File file =
+        kiln::hdf5::File::read(kiln::fuzz::sound("results/fom/checkpoint.h5"), kiln::fuzz::alone());
     identity = file.text("identity");
   }
   kiln::Input input;

@@ -83,9 +83,9 @@ void edit_attribute(hid_t file, const Part& part, const Change& change) {
 void replace(hid_t file, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* values,
              bool chunked) {
   H5Ldelete(file, name.c_str(), H5P_DEFAULT);
-  const Id space(shape.empty() ? H5Screate(H5S_SCALAR)
-                               : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-                 H5Sclose);
+  const Id space(
+      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+      H5Sclose);
   const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   if (chunked) {
     std::vector<hsize_t> chunk;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-/// Changes to the contents of a sound HDF5 file as a fuzzer's bytes dictate them: a flipped bit in the file itself would
-/// only show again that its seal is broken.
+/// Changes to the contents of a sound HDF5 file as a fuzzer's bytes dictate them: a flipped bit in the file itself
+/// would only show again that its seal is broken.
 namespace kiln::fuzz {
 
 /// A dataset, or an attribute of an object.

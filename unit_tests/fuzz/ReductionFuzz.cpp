@@ -5,8 +5,8 @@
 #include "unit_tests/fuzz/Edits.hpp"
 #include "unit_tests/fuzz/Harness.hpp"
 
-// Reduction files, as GNAT and LSPG read them. First byte: 0 to 7: the others are the file; else they are edits of a sound
-// one.
+// Reduction files, as GNAT and LSPG read them. First byte: 0 to 7: the others are the file; else they are edits of a
+// sound one.
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   kiln::fuzz::initialise();

@@ -157,7 +157,8 @@ TEST_F(Refusal, ATruncatedFile) {
   world()->barrier();
   if (world()->getRank() == 0) std::filesystem::resize_file(file_, size / 2);
   world()->barrier();
-  const std::string start = fmt::format("{}: cannot be read (truncated file: eof = {}, sblock->base_addr = 0", file_, size / 2);
+  const std::string start =
+      fmt::format("{}: cannot be read (truncated file: eof = {}, sblock->base_addr = 0", file_, size / 2);
   EXPECT_EQ(opening("gnat").substr(0, start.size()), start);
 }
 
@@ -173,8 +174,9 @@ TEST_F(Refusal, AFileThatLostItsSeal) {
   if (world()->getRank() == 0) std::filesystem::resize_file(file_, size - 1);
   world()->barrier();
   EXPECT_EQ(opening("gnat"),
-            file_ + ": carries no seal: it was cut short, changed, or written by another version of Kiln; expected the "
-                    "file as this version of Kiln wrote it");
+            file_ +
+                ": carries no seal: it was cut short, changed, or written by another version of Kiln; expected the "
+                "file as this version of Kiln wrote it");
 }
 
 /// Whatever byte is changed, and to whatever: the file is refused before HDF5 looks at it.
@@ -221,7 +223,8 @@ TEST_F(Refusal, NumbersOutOfBounds) {
   };
   const auto mesh = [](hdf5::File& file) { return file.group("windows").group("0").group("sample_mesh"); };
   refused([](hdf5::File& file) { file.attribute("components", 0); }, "attribute 'components': is 0; expected 1 to");
-  refused([](hdf5::File& file) { file.attribute("components", 1LL << 40); }, "attribute 'components': is 1099511627776");
+  refused([](hdf5::File& file) { file.attribute("components", 1LL << 40); },
+          "attribute 'components': is 1099511627776");
   refused([](hdf5::File& file) { file.attribute("particles", -1); }, "attribute 'particles': is -1");
   refused([](hdf5::File& file) { file.attribute("particles", 3); }, "holds particle ");
   const auto rank = [](long long value) {

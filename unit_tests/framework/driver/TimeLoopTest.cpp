@@ -139,7 +139,8 @@ TEST(TimeLoop, ASignalEndsItBetweenSteps) {
       EXPECT_LT(observer.last, 60) << "the ranks agree within about a quarter of a second";
       EXPECT_EQ(observer.checkpoint, every > 0);
       const std::string told = stopped.what();
-      EXPECT_NE(told.find("came: stopped after step " + std::to_string(observer.last) + " of 500"), std::string::npos) << told;
+      EXPECT_NE(told.find("came: stopped after step " + std::to_string(observer.last) + " of 500"), std::string::npos)
+          << told;
     }
     int lowest = observer.last, highest = observer.last;
     Teuchos::reduceAll(*world(), Teuchos::REDUCE_MIN, 1, &observer.last, &lowest);

@@ -100,13 +100,14 @@ TEST_F(Seal, AChangeTakesTheSealAway) {
 
 TEST_F(Seal, AFlippedBitIsNoticedWhenTheFileIsOpened) {
   const hdf5::Segment large = large_segment();
-  for (const std::size_t place : {std::size_t{50}, std::size_t{700}, std::size_t(large.offset - 1),
-                                  std::size_t(large.offset + large.length)}) {
+  for (const std::size_t place :
+       {std::size_t{50}, std::size_t{700}, std::size_t(large.offset - 1), std::size_t(large.offset + large.length)}) {
     if (place >= size()) continue;
     change(place);
     const std::string told = file_error([&] { hdf5::File::read(name_, world()); });
     EXPECT_EQ(told.rfind(name_ + ": ", 0), 0u) << told;
-    EXPECT_NE(told.find("is damaged: it is not what was written; expected the file as Kiln wrote it"), std::string::npos)
+    EXPECT_NE(told.find("is damaged: it is not what was written; expected the file as Kiln wrote it"),
+              std::string::npos)
         << place << ": " << told;
     change(place);
   }
@@ -117,7 +118,8 @@ TEST_F(Seal, AFlippedBitOfALargeDatasetIsNoticedWhenItIsRead) {
   change(large.offset + large.length / 2);
   const hdf5::File file = hdf5::File::read(name_, world());
   EXPECT_EQ(file.reals("small").values.size(), 3u);
-  const std::string expected = name_ + ": /large: is damaged: it is not what was written; expected the file as Kiln wrote it";
+  const std::string expected =
+      name_ + ": /large: is damaged: it is not what was written; expected the file as Kiln wrote it";
   EXPECT_EQ(file_error([&] { file.reals("large"); }), expected);
   EXPECT_EQ(file_error([&] { file.read_block("large", {0}, {10}); }), expected);
 }
@@ -138,9 +140,11 @@ TEST_F(Seal, AnUnsealedFileHasNone) {
   hdf5::File::create(name, world()).attribute("answer", 1);
   const hdf5::File file = hdf5::File::read(name, world());
   EXPECT_EQ(file.integer("answer"), 1);
-  EXPECT_EQ(file_error([&] { file.require_seal(); }),
-            name + ": carries no seal: it was cut short, changed, or written by another version of Kiln; expected the file as "
-                   "this version of Kiln wrote it");
+  EXPECT_EQ(
+      file_error([&] { file.require_seal(); }),
+      name +
+          ": carries no seal: it was cut short, changed, or written by another version of Kiln; expected the file as "
+          "this version of Kiln wrote it");
 }
 
 }  // namespace

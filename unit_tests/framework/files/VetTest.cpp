@@ -57,7 +57,8 @@ TEST(Vet, ASoundFilePasses) {
 
 TEST(Vet, LinksToOtherFilesAreRefused) {
   TestFolder folder;
-  make(folder / "link.h5", [](hid_t file) { H5Lcreate_external("other.h5", "/x", file, "x", H5P_DEFAULT, H5P_DEFAULT); });
+  make(folder / "link.h5",
+       [](hid_t file) { H5Lcreate_external("other.h5", "/x", file, "x", H5P_DEFAULT, H5P_DEFAULT); });
   EXPECT_EQ(told(folder / "link.h5"), "/x: leads to another file");
   make(folder / "values.h5", [](hid_t file) {
     const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
@@ -100,8 +101,9 @@ TEST(Vet, DeclaredButNotThere) {
       file.reals(name);
       FAIL() << "taken";
     } catch (const FileError& error) {
-      EXPECT_EQ(std::string(error.what()), (folder / "a.h5") + ": /" + name +
-                                               ": has shape 1099511627776; expected values for all of it: there are 0 bytes");
+      EXPECT_EQ(std::string(error.what()),
+                (folder / "a.h5") + ": /" + name +
+                    ": has shape 1099511627776; expected values for all of it: there are 0 bytes");
     }
   }
 }

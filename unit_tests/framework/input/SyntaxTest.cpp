@@ -12,7 +12,7 @@ class SyntaxTest : public InputTest {
     std::string expected;
   };
   void expect(const std::vector<Case>& cases) const {
-    for (const Case& one : cases) EXPECT_EQ(mistakes_of(one.text), Lines{one.expected}) << one.text;
+    for (const Case& one : cases) EXPECT_EQ(mistakes_of(one.text), Lines{one.expected}) << one.text.substr(0, 400);
   }
 };
 
@@ -82,7 +82,7 @@ TEST_F(SyntaxTest, WhatWouldTakeForEverIsRefused) {
   for (int i = 0; i < 6000; ++i) keys += "key" + std::to_string(i) + ": 1\n";
   for (int i = 0; i < 300000; ++i) values += "a,";
   expect({{keys, "run.yaml:5002:1: more than 5000 keys in one block"},
-          {values + "a]\n", "run.yaml:1:400006: more than 200000 values"}});
+          {values + "a]\n", "run.yaml:1:400002: more than 200000 values"}});
 }
 
 TEST_F(SyntaxTest, VeryManyMistakesAreCounted) {
@@ -95,7 +95,8 @@ TEST_F(SyntaxTest, VeryManyMistakesAreCounted) {
 }
 
 TEST_F(SyntaxTest, ATextCannotHoldNul) {
-  expect({{"title: \"a\\0b\"\n", "run.yaml:1:8: the text 'a\\x00b' holds the character NUL; expected a text without it"}});
+  expect(
+      {{"title: \"a\\0b\"\n", "run.yaml:1:8: the text 'a\\x00b' holds the character NUL; expected a text without it"}});
 }
 
 TEST_F(SyntaxTest, HarmlessTextIsRead) {
