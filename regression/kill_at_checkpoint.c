@@ -1,19 +1,55 @@
-/* Preloaded into a run, kills it the moment it is about to put its checkpoint of number KILN_KILL_AT_CHECKPOINT (1 is the
-   first) in place: a kill that always comes at the same step, however fast the run is. */
+/* Preloaded into a run, kills it at a moment of the test's choice, however fast the run is:
+   KILN_KILL_AT_CHECKPOINT=N  when it is about to put its Nth checkpoint in place (1 is the first);
+   KILN_KILL_IN_CHECKPOINT=N  in the middle of the Nth piece that it writes into a checkpoint. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+static int ends_with(const char* text, const char* end) {
+  const size_t length = strlen(text), end_length = strlen(end);
+  return length >= end_length && strcmp(text + length - end_length, end) == 0;
+}
 
 int rename(const char* from, const char* to) {
-  static const char name[] = "/checkpoint.h5";
   static int count = 0;
-  const size_t length = strlen(to);
   const char* last = getenv("KILN_KILL_AT_CHECKPOINT");
-  if (last != NULL && length >= strlen(name) && strcmp(to + length - strlen(name), name) == 0 && ++count == atoi(last)) {
-    raise(SIGKILL);
-  }
+  if (last != NULL && ends_with(to, "/checkpoint.h5") && ++count == atoi(last)) raise(SIGKILL);
   int (*system_rename)(const char*, const char*) = (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
   return system_rename(from, to);
+}
+
+static int is_the_piece(int descriptor) {
+  static int count = 0;
+  const char* last = getenv("KILN_KILL_IN_CHECKPOINT");
+  char link[64], name[4096];
+  if (last == NULL) return 0;
+  snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+  const ssize_t length = readlink(link, name, sizeof name - 1);
+  if (length <= 0) return 0;
+  name[length] = '\0';
+  return ends_with(name, "/checkpoint.h5.partial") && ++count == atoi(last);
+}
+
+typedef ssize_t (*Pwrite)(int, const void*, size_t, off64_t);
+
+static ssize_t write_at(const char* function, int descriptor, const void* data, size_t size, off64_t offset) {
+  const Pwrite system_pwrite = (Pwrite)dlsym(RTLD_NEXT, function);
+  if (is_the_piece(descriptor)) {
+    system_pwrite(descriptor, data, size / 2, offset);
+    raise(SIGKILL);
+  }
+  return system_pwrite(descriptor, data, size, offset);
+}
+
+ssize_t pwrite(int descriptor, const void* data, size_t size, off_t offset) {
+  return write_at("pwrite", descriptor, data, size, offset);
+}
+
+ssize_t pwrite64(int descriptor, const void* data, size_t size, off64_t offset) {
+  return write_at("pwrite64", descriptor, data, size, offset);
 }

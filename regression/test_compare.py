@@ -16,10 +16,14 @@ class CompareTest(KilnTest):
         shutil.copytree(self.folder / "a", self.folder / "b")
         self.b = self.folder / "b" / "fom"
 
-    def differs(self, *words, options=()):
+    def differs(self, *words, options=(), unreadable=None):
         compared = self.kiln("compare", "a/fom", "b/fom", *options)
-        self.assertEqual(compared.status, 1, compared.stdout)
-        self.assertEqual(compared.stderr, "")
+        self.assertEqual(compared.status, 2 if unreadable else 1, compared.stdout)
+        if unreadable:
+            self.assertTrue(compared.stderr.startswith(unreadable + ": "), compared.stderr)
+            self.assertEqual(compared.stderr.count("\n"), 1)
+        else:
+            self.assertEqual(compared.stderr, "")
         for word in words:
             self.assertIn(word, compared.stdout)
         self.assertRegex(compared.stdout, r"different: \d+ numbers compared\n\Z")
@@ -98,7 +102,7 @@ class CompareTest(KilnTest):
 
     def test_damaged_file(self):
         (self.b / "run.h5").write_bytes((self.b / "run.h5").read_bytes()[:3000])
-        self.differs("FAULT b/fom/run.h5")
+        self.differs("FAULT b/fom/run.h5", unreadable="b/fom/run.h5")
 
     def test_empty_folders(self):
         shutil.rmtree(self.b)

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 from harness import SMALL, KilnTest, command, datasets, digests, main
+from hostile.seal import seal
 
 # Slow enough that the beam stays on the part, long enough that a kill comes in the middle.
 CASE = ("model.heat_source.velocity=[0.1 m/s, 0 m/s]", "output.checkpoint.every=4")
@@ -162,6 +163,8 @@ class RestartTest(KilnTest):
         checkpoint = self.solve("run") / "fom" / "checkpoint.h5"
         with h5py.File(checkpoint, "r+") as file:
             del file["unknown"]
+        self.refused("carries no seal")
+        seal(checkpoint)
         self.refused("unknown", ranks=2)
 
 

@@ -2,18 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <Tpetra_Map.hpp>
 #include <sstream>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Reserve.hpp"
+#include "framework/files/Seal.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/report/RunReport.hpp"
 
 namespace kiln {
 namespace {
 
-constexpr long long format = 1;
+constexpr long long format = 2;
+
+/// For HDF5's own account of what a checkpoint holds.
+constexpr std::uint64_t smallest_room = 65536;
 
 /// First line in which two texts differ, as "'a' there, 'b' here".
 std::string first_difference(const std::string& there, const std::string& here) {
@@ -37,13 +43,14 @@ Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, std::string i
       scheme_(scheme),
       communicator_(context.communicator),
       folder_(context.folder),
-      identity_(std::move(identity)) {}
+      identity_(std::move(identity)),
+      room_(smallest_room + identity_.size() + 3 * sizeof(double) * method_.coordinates()->getGlobalNumElements()) {}
 
 void Checkpoint::observe(const Moment& moment) {
   if (!moment.checkpoint) return;
   AtomicPath path(file(folder_), communicator_);
   {
-    hdf5::File checkpoint = hdf5::File::create(path.temporary(), communicator_);
+    hdf5::File checkpoint = hdf5::create_with_room(path.temporary(), room_, communicator_);
     checkpoint.attribute("format", format);
     checkpoint.attribute("identity", identity_);
     checkpoint.attribute("step", moment.step);
@@ -53,9 +60,16 @@ void Checkpoint::observe(const Moment& moment) {
     scheme_.save(scheme);
     hdf5::Group method = checkpoint.create_group("method");
     method_.save(method);
+    // A disk that is full says so here or never: closing is silent.
+    checkpoint.flush();
   }
+  hdf5::seal(path.temporary(), *communicator_);
   path.commit();
   ++written_;
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file(folder_), unknown);
+  // An earlier state more or less, as a scheme starts, fits in as well.
+  if (!unknown) room_ = size + size / 4;
 }
 
 void Checkpoint::finish(RunReport& report) {
@@ -63,13 +77,15 @@ void Checkpoint::finish(RunReport& report) {
 }
 
 int Checkpoint::restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
-                        TimeScheme& scheme, VectorView x, const Teuchos::RCP<const Communicator>& communicator) {
+                        TimeScheme& scheme, VectorView x, int last_step,
+                        const Teuchos::RCP<const Communicator>& communicator) {
   const std::string path = file(folder).string();
   const hdf5::File checkpoint = hdf5::File::read(path, communicator);
   if (checkpoint.integer("format") != format) {
     throw FileError(path, "attribute format", fmt::format("version {}", checkpoint.integer("format")),
                     fmt::format("version {}, which this Kiln writes", format));
   }
+  checkpoint.require_seal();
   const std::string saved = checkpoint.text("identity");
   if (saved != identity) {
     throw FileError(path, "", "is the checkpoint of another run: " + first_difference(saved, identity),
@@ -79,7 +95,7 @@ int Checkpoint::restore(const std::filesystem::path& folder, const std::string& 
   // The scheme evaluates states and rates at the rows, which the method must have found again by then.
   method.restore(checkpoint.group("method"));
   scheme.restore(checkpoint.group("scheme"));
-  return static_cast<int>(checkpoint.integer("step"));
+  return static_cast<int>(checkpoint.integer("step", 0, last_step));
 }
 
 }  // namespace kiln

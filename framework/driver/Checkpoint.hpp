@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -23,10 +24,11 @@ class Checkpoint : public Observer {
   static std::filesystem::path file(const std::filesystem::path& folder) { return folder / "checkpoint.h5"; }
 
   /// Takes x, the scheme's history and the method's solver state from the checkpoint in `context.folder`; returns its
-  /// step. Throws FileError for a missing or damaged file and for one of another run, naming the first line of
-  /// `identity` that differs.
+  /// step, which is at most `last_step`. Throws FileError for a missing or damaged file and for one of another run,
+  /// naming the first line of `identity` that differs.
   static int restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
-                     TimeScheme& scheme, VectorView x, const Teuchos::RCP<const Communicator>& communicator);
+                     TimeScheme& scheme, VectorView x, int last_step,
+                     const Teuchos::RCP<const Communicator>& communicator);
 
  private:
   Method& method_;
@@ -34,6 +36,7 @@ class Checkpoint : public Observer {
   Teuchos::RCP<const Communicator> communicator_;
   std::filesystem::path folder_;
   std::string identity_;
+  std::uint64_t room_;  ///< bytes that the next one may take
   int written_ = 0;
 };
 

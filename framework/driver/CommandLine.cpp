@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 
 #include "framework/base/Error.hpp"
@@ -17,10 +18,14 @@
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/driver/Study.hpp"
 #include "framework/driver/StudySpecification.hpp"
+#include "framework/files/AtomicFile.hpp"
 #include "framework/files/Compare.hpp"
+#include "framework/files/Together.hpp"
 #include "framework/plugin/Plugins.hpp"
 #include "framework/registry/Describe.hpp"
 #include "framework/registry/Nearest.hpp"
+#include "framework/registry/Reference.hpp"
+#include "framework/registry/Schema.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
 #include "framework/report/RunReport.hpp"
@@ -104,6 +109,19 @@ const WholeFile* whole_file(const std::string& name) {
   return nullptr;
 }
 
+/// The pages of `kiln reference`, each written whole.
+void write_reference(const std::filesystem::path& folder, const Teuchos::RCP<const Communicator>& communicator) {
+  on_root(*communicator, folder.string(), [&folder]() -> std::optional<Fault> {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (!std::filesystem::is_directory(folder)) return Fault{"", "is no folder and cannot be made", "a folder"};
+    return std::nullopt;
+  });
+  std::vector<InputKind> kinds;
+  for (const WholeFile& file : whole_files) kinds.push_back({file.name, file.title, file.specification()});
+  for (const auto& [name, text] : reference_pages(kinds)) write_atomically(folder / name, text, communicator, false);
+}
+
 }  // namespace
 
 int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& communicator) {
@@ -114,7 +132,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   app.footer(
       "Exit status: 0 done, 1 a comparison differs, a case of a study failed or an unforeseen error, 2 bad input or "
       "data file, 3 the solve "
-      "diverged.\nRun the computing commands on R ranks with mpirun -n R kiln …");
+      "diverged, 4 stopped by SIGTERM or SIGINT.\nRun the computing commands on R ranks with mpirun -n R kiln …");
 
   CommandOptions options;
   std::string name, left, right, folder;
@@ -208,7 +226,32 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
     };
   });
 
-  for (CLI::App* loads : {run_app, train_app, study_app, check_app, list_app, describe_app, template_app}) {
+  std::string kind = "input";
+  CLI::App* schema_app = app.add_subcommand("schema", "Print a JSON Schema of input files, for editors");
+  schema_app->add_option("KIND", kind, "'input' or 'study'")->capture_default_str();
+  schema_app->callback([&] {
+    command = [&]() -> int {
+      const WholeFile* file = whole_file(kind);
+      if (file == nullptr) {
+        throw InputError("", fmt::format("there is no kind of file '{}'", kind), "input or study",
+                         nearest(kind, {"input", "study"}));
+      }
+      print(*communicator, schema_of(file->specification(), fmt::format("Kiln: {}", file->title)).dump(1) + "\n");
+      return exit_success;
+    };
+  });
+
+  CLI::App* reference_app = app.add_subcommand("reference", "Write pages with all keys of all components (Markdown)");
+  reference_app->add_option("FOLDER", folder, "where to")->required();
+  reference_app->callback([&] {
+    command = [&]() -> int {
+      write_reference(folder, communicator);
+      return exit_success;
+    };
+  });
+
+  for (CLI::App* loads :
+       {run_app, train_app, study_app, check_app, list_app, describe_app, template_app, schema_app, reference_app}) {
     plugin_options.add_to(loads);
   }
 
@@ -233,14 +276,15 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
     command = [&]() -> int {
       std::vector<FieldTolerance> own;
       for (const std::string& text : own_tolerances) own.push_back(field_tolerance(text));
-      int same = 0;
+      int status = exit_success;
       if (communicator->getRank() == 0) {
         const CompareResult result = compare(left, right, tolerance, floor, own);
         print(*communicator, result.text());
-        same = result.same() ? 1 : 0;
+        for (const std::string& problem : result.unreadable) std::fprintf(stderr, "%s\n", problem.c_str());
+        status = !result.unreadable.empty() ? exit_bad_input : result.same() ? exit_success : exit_failure;
       }
-      Teuchos::broadcast(*communicator, 0, &same);
-      return same == 1 ? exit_success : exit_failure;
+      Teuchos::broadcast(*communicator, 0, &status);
+      return status;
     };
   });
 

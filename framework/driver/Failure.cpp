@@ -6,10 +6,12 @@
 #include <Teuchos_DefaultMpiComm.hpp>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <thread>
 
 #include "framework/base/Error.hpp"
 #include "framework/driver/ExitStatus.hpp"
+#include "framework/driver/StopRequest.hpp"
 
 namespace kiln {
 namespace {
@@ -25,6 +27,10 @@ FailureOutcome outcome_of(std::exception_ptr failure) {
     return {exit_bad_input, error.what()};
   } catch (const DivergenceError& error) {
     return {exit_diverged, error.what()};
+  } catch (const Stopped& stopped) {
+    return {exit_stopped, stopped.what()};
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {exit_bad_input, fmt::format("{}: {}", error.path1().string(), error.code().message())};
   } catch (const std::bad_alloc&) {
     return {exit_failure, "out of memory"};
   } catch (const std::exception& error) {

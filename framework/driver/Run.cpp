@@ -14,6 +14,7 @@
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/RunSpecification.hpp"
+#include "framework/driver/StopRequest.hpp"
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Folders.hpp"
@@ -46,7 +47,7 @@ class Assembly {
     const std::string identity = fmt::format("model:\n{}time:\n{}method:\n{}", to_yaml(list.sublist("model")),
                                              to_yaml(list.sublist("time")), to_yaml(list.sublist("method")));
     if (restart) {
-      span_.first_step = Checkpoint::restore(folder, identity, *method_, *scheme_, x_, communicator);
+      span_.first_step = Checkpoint::restore(folder, identity, *method_, *scheme_, x_, span_.last_step, communicator);
     } else {
       method_->initial(x_);
       scheme_->start(x_, 0.0);
@@ -284,6 +285,13 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   } catch (const DivergenceError& error) {
     facts["status"] = fmt::format("diverged: {}", error.what());
     failure = std::current_exception();
+  } catch (const Stopped& stopped) {
+    const bool saved = assembly->span().checkpoint_every > 0;
+    const std::string message = fmt::format("{}; {}", stopped.what(),
+                                            saved ? "checkpoint.h5 holds that step: go on with kiln run --restart"
+                                                  : "nothing to go on from: the input has no block output.checkpoint");
+    facts["status"] = message;
+    failure = std::make_exception_ptr(Stopped(message));
   }
   const Seconds stepping = elapsed(loop, *communicator);
   report_solve(report, totals);

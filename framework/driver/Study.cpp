@@ -12,6 +12,7 @@
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/Run.hpp"
+#include "framework/driver/StopRequest.hpp"
 #include "framework/driver/StudyCases.hpp"
 #include "framework/driver/StudyProgress.hpp"
 #include "framework/driver/StudySpecification.hpp"
@@ -160,6 +161,9 @@ class Runner {
       const Input& input = matrix_.inputs.of(index);
       item.command == "train" ? train(input, options, communicator_) : run(input, options, communicator_);
       record.status = CaseStatus::complete;
+    } catch (const Stopped&) {
+      // The case stays interrupted: the next start goes on with it.
+      throw;
     } catch (...) {
       record.message = settle_failure(std::current_exception(), *communicator_).message;
       record.status = CaseStatus::failed;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "framework/files/AtomicFile.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/report/Hash.hpp"
 
@@ -20,7 +21,7 @@ std::filesystem::path file_in(const std::filesystem::path& folder) { return fold
 
 std::optional<CaseRecord> parse(const std::string& text) {
   try {
-    const nlohmann::json facts = nlohmann::json::parse(text);
+    const nlohmann::json facts = parse_json(text);
     if (facts.at("format") != format) return std::nullopt;
     CaseRecord record;
     for (const CaseStatus status : statuses) {

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "framework/base/Error.hpp"
+#include "framework/driver/StopRequest.hpp"
 
 namespace kiln {
 namespace {
@@ -70,7 +71,9 @@ TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
 LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
                          const std::vector<Observer*>& observers) {
   LoopTotals totals;
-  Checkpoints checkpoints(span, *method.particles()->getComm());
+  const Communicator& communicator = *method.particles()->getComm();
+  Checkpoints checkpoints(span, communicator);
+  StopRequest stop(communicator, span.first_step);
   // Looked up once: a reduced step takes about as long as a look-up by name.
   const Teuchos::RCP<Teuchos::Time> step_time = Teuchos::TimeMonitor::getNewCounter("kiln: time step");
   const Teuchos::RCP<Teuchos::Time> observer_time = Teuchos::TimeMonitor::getNewCounter("kiln: observers");
@@ -88,7 +91,13 @@ LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const
     totals.residuals += solve.residuals;
     totals.iterations += solve.iterations;
     totals.capped_steps += solve.converged ? 0 : 1;
-    show({step, span.last_step, time, x, solve, checkpoints.due(step)}, observers, *observer_time);
+    const bool stopped = stop.came(step) && step < span.last_step;
+    const bool checkpoint = checkpoints.due(step) || (stopped && span.checkpoint_every > 0);
+    show({step, span.last_step, time, x, solve, checkpoint}, observers, *observer_time);
+    if (stopped) {
+      throw Stopped(fmt::format("{} came: stopped after step {} of {}, t = {:.6g} s", StopRequest::name(), step,
+                                span.last_step, time));
+    }
   }
   return totals;
 }

@@ -29,7 +29,8 @@ struct LoopTotals {
 };
 
 /// Runs a method through its time span. `scheme` is started or restored already and x is the unknown at first_step;
-/// observers see the first moment only when first_step is 0. Adds the step to a DivergenceError.
+/// observers see the first moment only when first_step is 0. Adds the step to a DivergenceError. Throws Stopped
+/// (StopRequest.hpp) after a step in which SIGTERM or SIGINT came, with a checkpoint of that step if `span` has any.
 LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
                          const std::vector<Observer*>& observers);
 

@@ -2,9 +2,14 @@
 
 #include <dlfcn.h>
 
+#include <mpi.h>
+
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "framework/driver/CommandLine.hpp"
+#include "framework/files/Reserve.hpp"
 
 namespace {
 
@@ -16,15 +21,26 @@ void use_one_blas_thread() {
   if (set_threads != nullptr) set_threads(1);
 }
 
+/// Without HDF5's farewell.
+[[noreturn]] void leave_at_once(int status) {
+  std::fflush(nullptr);
+  if (Tpetra::getDefaultComm()->getSize() > 1) MPI_Abort(MPI_COMM_WORLD, status);
+  std::_Exit(status);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   use_one_blas_thread();
+  // A limit on a file's size is told like a full disk, not by the signal's death.
+  std::signal(SIGXFSZ, SIG_IGN);
   // The command line is Kiln's alone: Kokkos would answer --help with its own page and take unprefixed flags of its
   // own. Its settings come from KOKKOS_… environment variables.
   int library_argc = 1;
   char* library_arguments[] = {argv[0], nullptr};
   char** library_argv = library_arguments;
   Tpetra::ScopeGuard scope(&library_argc, &library_argv);
-  return kiln::command_line(argc, argv, Tpetra::getDefaultComm());
+  const int status = kiln::command_line(argc, argv, Tpetra::getDefaultComm());
+  if (kiln::hdf5::writing_failed()) leave_at_once(status);
+  return status;
 }

@@ -54,7 +54,7 @@ void compare_files(const fs::path& a, const fs::path& b, const std::string& labe
       comparison.fault(fmt::format("{} is none of .h5, .csv, .json", a.string()));
     }
   } catch (const FileError& error) {
-    comparison.fault(error.what());
+    comparison.unreadable(error.what());
   }
   if (comparison.compared() == compared && comparison.faults() == faults) {
     comparison.fault(fmt::format("nothing was compared of {} and {}", a.string(), b.string()));

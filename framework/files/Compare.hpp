@@ -21,7 +21,8 @@ struct FieldDifference {
 
 struct CompareResult {
   std::vector<FieldDifference> fields;
-  std::vector<std::string> faults;  ///< what is missing, has another shape, or cannot be read
+  std::vector<std::string> faults;      ///< what is missing, has another shape, or cannot be read
+  std::vector<std::string> unreadable;  ///< those of the faults that are files that cannot be read
   std::size_t compared() const;
   /// No field fails, nothing is missing, and something was compared.
   bool same() const;

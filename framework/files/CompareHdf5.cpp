@@ -13,6 +13,8 @@
 namespace kiln {
 namespace {
 
+constexpr int deepest = 32;
+
 std::string index_text(std::size_t flat, const std::vector<std::size_t>& shape) {
   std::vector<std::size_t> index(shape.size());
   for (std::size_t d = shape.size(); d-- > 0;) {
@@ -57,7 +59,9 @@ class Hdf5Comparison {
   Hdf5Comparison(const hdf5::Group& a, const hdf5::Group& b, std::string label, NumberComparison& comparison)
       : facts_a_(a), facts_b_(b), label_(std::move(label)), comparison_(comparison) {}
 
-  void compare_groups(const hdf5::Group& a, const hdf5::Group& b) {
+  void compare_groups(const hdf5::Group& a, const hdf5::Group& b, int depth = 0) {
+    // Hard links may lead round in a circle.
+    if (depth > deepest) return comparison_.fault(fmt::format("{}{} is nested too deeply", label_, a.path()));
     std::set<std::string> names;
     for (const hdf5::Group* group : {&a, &b}) {
       for (const std::string& name : group->names()) names.insert(name);
@@ -68,7 +72,7 @@ class Hdf5Comparison {
       if (!a.has(name) || !b.has(name)) {
         comparison_.fault(fmt::format("{}{} is missing in {}", label_, path, (a.has(name) ? b : a).file()));
       } else {
-        compare_objects(a, b, name, path);
+        compare_objects(a, b, name, path, depth);
       }
     }
   }
@@ -76,12 +80,13 @@ class Hdf5Comparison {
  private:
   bool is_run() const { return facts_a_.is_run() && facts_b_.is_run(); }
 
-  void compare_objects(const hdf5::Group& a, const hdf5::Group& b, const std::string& name, const std::string& path) {
+  void compare_objects(const hdf5::Group& a, const hdf5::Group& b, const std::string& name, const std::string& path,
+                       int depth) {
     const bool reals = a.holds_reals(name), integers = a.holds_integers(name);
     if (reals != b.holds_reals(name) || integers != b.holds_integers(name)) {
       return comparison_.fault(label_ + path + " is of different kinds");
     }
-    if (!reals && !integers) return compare_groups(a.group(name), b.group(name));
+    if (!reals && !integers) return compare_groups(a.group(name), b.group(name), depth + 1);
     const std::vector<std::size_t> shape = a.shape(name);
     if (shape != b.shape(name)) {
       return comparison_.fault(fmt::format("{}{} has shape {} and {}", label_, path, fmt::join(shape, " × "),

@@ -19,6 +19,10 @@ class NumberComparison {
   /// `where` is asked only when this is the worst so far.
   void add(double a, double b, const std::function<std::string()>& where);
   void fault(const std::string& text) { result_.faults.push_back(text); }
+  void unreadable(const std::string& text) {
+    fault(text);
+    result_.unreadable.push_back(text);
+  }
   std::size_t compared() const { return result_.compared(); }
   std::size_t faults() const { return result_.faults.size(); }
   /// Faults the tolerances that named no field: they may be misspelt, and then the field they meant had another one.

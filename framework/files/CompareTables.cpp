@@ -1,19 +1,22 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/CompareNumbers.hpp"
 #include "framework/files/CsvTable.hpp"
+#include "framework/files/Json.hpp"
 
 namespace kiln {
 namespace {
 
 nlohmann::json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
-  nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  std::ostringstream text;
+  text << file.rdbuf();
+  nlohmann::json json = parse_json(text.str());
   if (json.is_discarded()) throw FileError(path.string(), "", "is no readable JSON");
   return json;
 }

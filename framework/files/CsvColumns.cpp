@@ -13,9 +13,13 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Together.hpp"
+#include "framework/input/Mistakes.hpp"
 
 namespace kiln {
 namespace {
+
+/// Longer lines are no lines of a table.
+constexpr std::size_t longest_line = 4096;
 
 std::string_view trimmed(std::string_view text) {
   const char* blanks = " \t\r";
@@ -53,7 +57,7 @@ double number(std::string_view cell, const std::string& file, int line, const st
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
     throw FileError(file, fmt::format("line {}, column '{}'", line, column),
-                    cell.empty() ? "is empty" : fmt::format("'{}' is not a finite number", cell),
+                    cell.empty() ? "is empty" : fmt::format("{} is not a finite number", in_quotes(std::string(cell))),
                     "a number in SI units");
   }
   return value;
@@ -75,6 +79,10 @@ CsvColumns read_csv_columns(const std::string& file, const std::vector<std::stri
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view content = trimmed(std::string_view(text).substr(at, end - at));
     at = end + 1;
+    if (content.size() > longest_line) {
+      throw FileError(file, fmt::format("line {}", line + 1), fmt::format("has {} characters", content.size()),
+                      "a row of a table, separated by commas");
+    }
     if (content.empty() || content.front() == '#') continue;
     const std::vector<std::string_view> cells = split(content);
     const std::string place = fmt::format("line {}", line + 1);
@@ -84,7 +92,8 @@ CsvColumns read_csv_columns(const std::string& file, const std::vector<std::stri
         const bool known = std::count(required.begin(), required.end(), name) != 0 ||
                            std::count(optional.begin(), optional.end(), name) != 0;
         if (!known || csv.find(name) >= 0) {
-          throw FileError(file, place, fmt::format("column '{}' is {}", name, known ? "there twice" : "not known"),
+          throw FileError(file, place,
+                          fmt::format("column {} is {}", in_quotes(name), known ? "there twice" : "not known"),
                           fmt::format("a first line with the columns {}{}{}", fmt::join(required, ", "),
                                       optional.empty() ? "" : " and, as wanted, ", fmt::join(optional, ", ")));
         }

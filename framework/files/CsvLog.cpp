@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <iterator>
@@ -10,6 +11,7 @@
 
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Together.hpp"
+#include "framework/input/Mistakes.hpp"
 
 namespace kiln {
 namespace {
@@ -23,14 +25,14 @@ std::string header_of(const std::vector<std::string>& columns) {
 }
 
 /// The header and the rows up to `last_step` of an existing file.
-std::optional<Fault> read_kept(const std::filesystem::path& path, const std::string& header, int last_step,
-                               std::string& kept) {
+std::optional<Fault> read_kept(const std::filesystem::path& path, const std::string& header, std::size_t columns,
+                               int last_step, std::string& kept) {
   errno = 0;
   std::ifstream file(path);
   if (!file) return system_fault("read", errno);
   std::string line;
   std::getline(file, line);
-  if (line != header) return Fault{"line 1", "has the columns " + line, header};
+  if (line != header) return Fault{"line 1", "has the columns " + shown(line), header};
   kept = header + "\n";
   for (int number = 2; std::getline(file, line); ++number) {
     // A row without its end was being written when the program was killed.
@@ -38,7 +40,11 @@ std::optional<Fault> read_kept(const std::filesystem::path& path, const std::str
     int step = 0;
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), step);
     if (error != std::errc() || end == line.data() + line.size() || *end != ',') {
-      return Fault{fmt::format("line {}", number), "does not begin with a step: " + line, "a row of numbers"};
+      return Fault{fmt::format("line {}", number), "does not begin with a step: " + shown(line), "a row of numbers"};
+    }
+    const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+    if (commas + 1 != columns) {
+      return Fault{fmt::format("line {}", number), fmt::format("has {} cells", commas + 1), fmt::format("{}", columns)};
     }
     if (step <= last_step) kept += line + "\n";
   }
@@ -60,7 +66,7 @@ CsvLog::CsvLog(std::filesystem::path path, const std::vector<std::string>& colum
   const std::string header = header_of(columns);
   std::string kept = header + "\n";
   if (first_step > 0) {
-    on_root(*communicator_, path_.string(), [&] { return read_kept(path_, header, first_step, kept); });
+    on_root(*communicator_, path_.string(), [&] { return read_kept(path_, header, columns.size(), first_step, kept); });
   }
   write_atomically(path_, kept, communicator_);
   on_root(*communicator_, path_.string(), [this]() -> std::optional<Fault> {

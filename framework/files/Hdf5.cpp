@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_DefaultMpiComm.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -10,12 +11,18 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5Node.hpp"
+#include "framework/files/Hdf5Vet.hpp"
+#include "framework/files/Reserve.hpp"
+#include "framework/files/Seal.hpp"
 
 namespace kiln::hdf5 {
 namespace {
 
-/// HDF5 prints its own error stack unless told not to.
-void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// HDF5 prints its own error stack unless told not to, and would load a library to understand a file's compression.
+void silence() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5PLset_loading_state(0);
+}
 
 Id access_properties(const Communicator& communicator, bool parallel) {
   Id properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -71,6 +78,8 @@ void Node::fail(const std::string& name, const std::string& found, const std::st
 }
 
 void Node::require(bool succeeded, const std::string& name, const std::string& done) const {
+  unsigned intent = H5F_ACC_RDONLY;
+  if (!succeeded && H5Fget_intent(file->id, &intent) >= 0 && (intent & H5F_ACC_RDWR) != 0) note_failed_writing();
   const std::string why = succeeded ? "" : reason();
   throw_together(communicator(), file->path,
                  succeeded
@@ -89,6 +98,10 @@ std::string reason() {
       },
       &text);
   H5Eclear2(H5E_DEFAULT);
+  // Of a failed write HDF5 tells addresses and line ends, too.
+  const std::size_t end = text.find(", buf = ");
+  if (end != std::string::npos) text.erase(end);
+  text.erase(std::remove(text.begin(), text.end(), '\n'), text.end());
   return text.empty() ? text : " (" + text + ")";
 }
 
@@ -141,26 +154,43 @@ File File::create(const std::string& path, const Teuchos::RCP<const Communicator
 
 File File::read(const std::string& path, const Teuchos::RCP<const Communicator>& communicator) {
   silence();
-  on_root(*communicator, path, [&] {
-    const auto fault = cannot_open(path, O_RDONLY, "read");
-    return fault ? fault : not_hdf5(path);
+  std::vector<Segment> segments;
+  on_root(*communicator, path, [&]() -> std::optional<Fault> {
+    if (const auto fault = cannot_open(path, O_RDONLY, "read")) return fault;
+    if (const auto fault = not_hdf5(path)) return fault;
+    segments = read_seal(path, true);
+    return segments.empty() ? vet(path) : std::nullopt;
   });
+  int sealed = segments.empty() ? 0 : 1;
+  Teuchos::broadcast(*communicator, 0, 1, &sealed);
   // Each rank reads by itself: reading needs no agreement, and many small readings then cost no communication.
   const Id access = access_properties(*communicator, false);
   Id id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
-  return File(root_of(path, communicator, false, std::move(id), "read"));
+  File file(root_of(path, communicator, false, std::move(id), "read"));
+  OpenFile& opened = *file.node_->file;
+  opened.sealed = sealed == 1;
+  opened.checked.resize(segments.size(), false);
+  opened.seal = std::move(segments);
+  return file;
 }
 
 File File::modify(const std::string& path, const Teuchos::RCP<const Communicator>& communicator) {
   silence();
   on_root(*communicator, path, [&] {
-    const auto fault = cannot_open(path, O_RDWR, "written");
-    return fault ? fault : not_hdf5(path);
+    if (const auto fault = cannot_open(path, O_RDWR, "written")) return fault;
+    if (const auto fault = not_hdf5(path)) return fault;
+    return vet(path);
   });
   const bool parallel = communicator->getSize() > 1;
   const Id access = access_properties(*communicator, parallel);
   Id id(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose);
   return File(root_of(path, communicator, parallel, std::move(id), "opened"));
+}
+
+void File::require_seal() const {
+  if (node_->file->sealed) return;
+  throw FileError(file(), "", "carries no seal: it was cut short, changed, or written by another version of Kiln",
+                  "the file as this version of Kiln wrote it");
 }
 
 void File::flush() { node_->require(H5Fflush(node_->file->id, H5F_SCOPE_GLOBAL) >= 0, "", "written"); }

@@ -47,6 +47,9 @@ class Group {
   std::string text(const std::string& attribute) const;
   double real(const std::string& attribute) const;
   long long integer(const std::string& attribute) const;
+  /// Also check that the number is finite, or within bounds.
+  double finite_real(const std::string& attribute) const;
+  long long integer(const std::string& attribute, long long lowest, long long highest) const;
   std::string text_of(const std::string& dataset, const std::string& attribute) const;
 
   /// Replicated data; rank 0's values are written.
@@ -59,6 +62,8 @@ class Group {
   /// Also checks the shape; an entry of 0 matches any length.
   Array<double> reals(const std::string& name, const std::vector<std::size_t>& shape) const;
   Array<long long> integers(const std::string& name, const std::vector<std::size_t>& shape) const;
+  /// Also checks that all values are finite.
+  Array<double> finite_reals(const std::string& name, const std::vector<std::size_t>& shape) const;
   std::vector<std::size_t> shape(const std::string& name) const;
   /// Whether the object of this name is a dataset of floating-point numbers, or of integers.
   bool holds_reals(const std::string& name) const;
@@ -100,9 +105,12 @@ class File : public Group {
  public:
   /// A new file, written by all ranks; replaces an existing one. Throws FileError.
   static File create(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
-  /// Throws FileError for a missing file and for one that is not HDF5, damaged or cut short.
+  /// Throws FileError for a missing file and for one that is not HDF5, damaged or cut short. A sealed file (Seal.hpp)
+  /// is compared with its seal; any other is vetted (Hdf5Vet.hpp).
   static File read(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
   static File modify(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
+  /// Throws FileError unless the file was opened by read() and carries a seal.
+  void require_seal() const;
   /// Hands everything written so far to the operating system. Throws FileError when the disk refuses; closing cannot.
   void flush();
 

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Hdf5Node.hpp"
+#include "framework/files/Reserve.hpp"
 
 namespace kiln::hdf5 {
 namespace {
@@ -32,6 +36,7 @@ void write_attribute(const Node& node, const std::string& owner, const std::stri
     const Id attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     written = attribute.valid() && H5Awrite(attribute, type, value) >= 0;
   }
+  if (!written) note_failed_writing();
   const std::string why = written ? "" : reason();
   throw_together(
       node.communicator(), node.file->path,
@@ -157,6 +162,23 @@ double Group::real(const std::string& attribute) const {
 
 long long Group::integer(const std::string& attribute) const {
   return read_number<long long>(*node_, attribute, H5T_NATIVE_LLONG, false, "an integer");
+}
+
+double Group::finite_real(const std::string& attribute) const {
+  const double value = real(attribute);
+  if (!std::isfinite(value)) {
+    throw FileError(file(), place(*node_, "", attribute), fmt::format("is {}", value), "a finite number");
+  }
+  return value;
+}
+
+long long Group::integer(const std::string& attribute, long long lowest, long long highest) const {
+  const long long value = integer(attribute);
+  if (value < lowest || value > highest) {
+    throw FileError(file(), place(*node_, "", attribute), fmt::format("is {}", value),
+                    fmt::format("{} to {}", lowest, highest));
+  }
+  return value;
 }
 
 std::string Group::text_of(const std::string& dataset, const std::string& attribute) const {

@@ -3,6 +3,7 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "framework/base/Error.hpp"
@@ -86,6 +87,7 @@ void write_replicated(const Node& node, const std::string& name, hid_t type, con
 template <class T>
 Array<T> read_replicated(const Node& node, const std::string& name, H5T_class_t kind, hid_t type) {
   const Dataset dataset = open_dataset(node, name, kind);
+  check_values(node, dataset, name);
   Array<T> array{dataset.shape, std::vector<T>(product(dataset.shape))};
   bool read = true;
   if (node.communicator().getRank() == 0 && !array.values.empty()) {
@@ -94,6 +96,25 @@ Array<T> read_replicated(const Node& node, const std::string& name, H5T_class_t 
   node.require(read, name, "read");
   broadcast_values(node.communicator(), array.values);
   return array;
+}
+
+/// A shape is a few bytes of a file; the values must be in it, too.
+void require_values(const Node& node, const Dataset& dataset, const std::string& name) {
+  const Id type(H5Dget_type(dataset.id), H5Tclose);
+  const Id properties(H5Dget_create_plist(dataset.id), H5Pclose);
+  const H5D_layout_t layout = H5Pget_layout(properties);
+  if (layout == H5D_VIRTUAL) return;
+  std::size_t declared = H5Tget_size(type);
+  bool overflow = false;
+  for (const std::size_t extent : dataset.shape)
+    overflow = __builtin_mul_overflow(declared, extent, &declared) || overflow;
+  // No compression that makes sense saves more.
+  constexpr std::size_t best_compression = 4096;
+  const std::size_t stored = H5Dget_storage_size(dataset.id);
+  const std::size_t most = layout == H5D_CHUNKED ? std::max<std::size_t>(stored, 1) * best_compression : stored;
+  if (!overflow && declared <= most) return;
+  node.fail(name, "has shape " + shape_text(dataset.shape),
+            fmt::format("values for all of it: there are {} bytes", stored));
 }
 
 void check_shape(const Node& node, const std::string& name, const std::vector<std::size_t>& found,
@@ -133,7 +154,24 @@ Dataset open_dataset(const Node& node, const std::string& name, H5T_class_t type
     };
     node.fail(name, "holds " + words(dataset.type), words(type));
   }
+  require_values(node, dataset, name);
   return dataset;
+}
+
+void check_values(const Node& node, const Dataset& dataset, const std::string& name) {
+  if (!node.file->sealed) return;
+  const hsize_t length = H5Dget_storage_size(dataset.id);
+  const haddr_t offset = H5Dget_offset(dataset.id);
+  if (length < large_dataset || offset == HADDR_UNDEF) return;
+  on_root(node.communicator(), node.file->path, [&]() -> std::optional<Fault> {
+    const std::vector<Segment>& seal = node.file->seal;
+    for (std::size_t s = 0; s < seal.size(); ++s) {
+      if (seal[s].offset != offset || seal[s].length != length || node.file->checked[s]) continue;
+      check_segment(node.file->path, seal[s], node.path_of(name));
+      node.file->checked[s] = true;
+    }
+    return std::nullopt;
+  });
 }
 
 void create_dataset(const Node& node, const std::string& name, hid_t type, const std::vector<std::size_t>& shape,
@@ -150,6 +188,7 @@ void create_dataset(const Node& node, const std::string& name, hid_t type, const
 std::vector<double> read_slab(const Node& node, const Dataset& dataset, const std::string& name,
                               const std::vector<std::size_t>& start, const std::vector<std::size_t>& count) {
   check_block(node, dataset, name, start, count);
+  check_values(node, dataset, name);
   const Selection selection = select(dataset, start, count);
   std::vector<double> values(product(count));
   const bool read = H5Dread(dataset.id, H5T_NATIVE_DOUBLE, selection.memory, selection.file, transfer_properties(node),
@@ -195,6 +234,15 @@ Array<double> Group::reals(const std::string& name, const std::vector<std::size_
 Array<long long> Group::integers(const std::string& name, const std::vector<std::size_t>& shape) const {
   check_shape(*node_, name, open_dataset(*node_, name, H5T_INTEGER).shape, shape);
   return integers(name);
+}
+
+Array<double> Group::finite_reals(const std::string& name, const std::vector<std::size_t>& shape) const {
+  Array<double> array = reals(name, shape);
+  const auto bad = std::find_if(array.values.begin(), array.values.end(), [](double x) { return !std::isfinite(x); });
+  if (bad != array.values.end()) {
+    node_->fail(name, fmt::format("value {} is {}", bad - array.values.begin(), *bad), "finite numbers");
+  }
+  return array;
 }
 
 std::vector<std::size_t> Group::shape(const std::string& name) const { return open_dataset(*node_, name).shape; }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Seal.hpp"
 #include "framework/files/Together.hpp"
 
 /// What the .cpp files of the HDF5 layer share; nobody else includes this.
@@ -44,6 +45,9 @@ struct OpenFile {
   Teuchos::RCP<const Communicator> communicator;
   bool parallel;  ///< opened through MPI-IO
   Id id;
+  std::vector<Segment> seal = {};  ///< rank 0's; empty: none, or unknown
+  bool sealed = false;             ///< the same on every rank
+  std::vector<bool> checked = {};  ///< rank 0's: segments that were found intact
 };
 
 /// A group of an open file.
@@ -73,6 +77,8 @@ struct Dataset {
 Dataset open_dataset(const Node& node, const std::string& name);
 /// Throws FileError if the dataset is not of floating-point numbers (H5T_FLOAT) or integers (H5T_INTEGER).
 Dataset open_dataset(const Node& node, const std::string& name, H5T_class_t type);
+/// Compares a large dataset's values with the file's seal, if there is one: once. Collective.
+void check_values(const Node& node, const Dataset& dataset, const std::string& name);
 /// "3 × 4", or "a single value".
 std::string shape_text(const std::vector<std::size_t>& shape);
 

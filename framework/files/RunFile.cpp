@@ -11,6 +11,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
+#include "framework/files/Reserve.hpp"
 #include "framework/files/Together.hpp"
 
 namespace kiln {
@@ -18,10 +19,18 @@ namespace {
 
 constexpr double not_written = std::numeric_limits<double>::quiet_NaN();
 
-hdf5::File open(const std::filesystem::path& folder, int first_step,
-                const Teuchos::RCP<const Communicator>& communicator) {
+/// Bytes of a whole file: datasets, and what HDF5 notes of each frame's view.
+std::uint64_t room_for(std::size_t particles, const RunFile::Contents& contents) {
+  const std::uint64_t frames = contents.steps.size(), fields = contents.fields.size(), number = sizeof(double);
+  return number * (particles * (7 + fields * (frames + 1)) + frames * (2 + contents.coordinates)) +
+         1024 * frames * fields + 65536;
+}
+
+hdf5::File open(const std::filesystem::path& folder, std::size_t particles, const RunFile::Contents& contents,
+                int first_step, const Teuchos::RCP<const Communicator>& communicator) {
   const std::string path = (folder / "run.h5").string();
-  return first_step > 0 ? hdf5::File::modify(path, communicator) : hdf5::File::create(path, communicator);
+  return first_step > 0 ? hdf5::File::modify(path, communicator)
+                        : hdf5::create_with_room(path, room_for(particles, contents), communicator);
 }
 
 /// A vector of particles × components as a matrix.
@@ -52,7 +61,7 @@ RunFile::RunFile(std::filesystem::path folder, const Map& particles, ConstPositi
       communicator_(std::move(communicator)),
       contents_(std::move(contents)),
       order_(particles),
-      file_(open(folder_, first_step, communicator_)) {
+      file_(open(folder_, order_.rows(), contents_, first_step, communicator_)) {
   if (first_step > 0) {
     reopen(first_step);
   } else {

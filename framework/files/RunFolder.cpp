@@ -36,6 +36,18 @@ bool is_file_of_name(int descriptor, const std::string& name) {
          held.st_dev == named.st_dev;
 }
 
+/// Folders on the way to `path`, itself first, that are not there.
+std::vector<std::filesystem::path> missing_folders(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> missing;
+  std::error_code ignored;
+  for (std::filesystem::path folder = path; !folder.empty() && !std::filesystem::exists(folder, ignored);
+       folder = folder.parent_path()) {
+    missing.push_back(folder);
+    if (folder == folder.parent_path()) break;
+  }
+  return missing;
+}
+
 std::optional<Fault> take(const std::filesystem::path& folder, int& lock) {
   const std::string name = (folder / "run.lock").string();
   while (true) {
@@ -66,14 +78,26 @@ std::optional<Fault> take(const std::filesystem::path& folder, int& lock) {
 
 RunFolder::RunFolder(const std::filesystem::path& path, const Communicator& communicator) : path_(path) {
   on_root(communicator, path_.string(), [this]() -> std::optional<Fault> {
-    std::error_code error;
+    std::error_code error, ignored;
+    made_ = missing_folders(path_);
     std::filesystem::create_directories(path_, error);
-    if (!std::filesystem::is_directory(path_)) {
-      if (std::filesystem::exists(path_)) return Fault{"", "is not a folder", "a folder for the run's files"};
-      return system_fault("made", error.value());
+    std::optional<Fault> fault;
+    if (std::filesystem::is_directory(path_, ignored)) {
+      fault = take(path_, lock_);
+    } else if (std::filesystem::exists(path_, ignored)) {
+      fault = Fault{"", "is not a folder", "a folder for the run's files"};
+    } else {
+      fault = system_fault("made", error.value());
     }
-    return take(path_, lock_);
+    if (fault) remove_empty_folders();
+    return fault;
   });
+}
+
+void RunFolder::remove_empty_folders() {
+  std::error_code not_empty;
+  // What holds a file stays, and so does what is around it.
+  for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, not_empty);
 }
 
 RunFolder::~RunFolder() {
@@ -81,6 +105,7 @@ RunFolder::~RunFolder() {
   std::error_code ignored;
   std::filesystem::remove(path_ / "run.lock", ignored);
   ::close(lock_);
+  remove_empty_folders();
 }
 
 }  // namespace kiln

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
 
@@ -11,7 +12,7 @@ namespace kiln {
 class RunFolder {
  public:
   /// Throws FileError that names the folder when it cannot be made or written, or is held by another run. Writes
-  /// nothing but its lock, `run.lock`. Collective.
+  /// nothing but its lock, `run.lock`. Folders that it made and in which nothing was written go with it. Collective.
   RunFolder(const std::filesystem::path& path, const Communicator& communicator);
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
@@ -21,7 +22,10 @@ class RunFolder {
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;  ///< rank 0's descriptor of the locked file
+  void remove_empty_folders();
+
+  std::vector<std::filesystem::path> made_;  ///< the innermost first
+  int lock_ = -1;                            ///< rank 0's descriptor of the locked file
 };
 
 }  // namespace kiln

@@ -38,7 +38,9 @@ void on_root(const Communicator& communicator, const std::string& file,
     try {
       fault = work();
     } catch (const std::exception& error) {
-      fault = Fault{"", error.what(), ""};
+      const std::string text = error.what(), name = file + ": ";
+      // A FileError names the file already.
+      fault = Fault{"", text.compare(0, name.size(), name) == 0 ? text.substr(name.size()) : text, ""};
     }
   }
   throw_together(communicator, file, fault);

@@ -22,14 +22,6 @@ Teuchos::ParameterList& add_sublist(Teuchos::ParameterList& list, const std::str
   return list.sublist(key).setName(path);
 }
 
-/// Whether the block may be left out although it is wanted, since its keys all have defaults.
-bool has_defaults_only(const Specification& specification) {
-  return std::all_of(specification.entries().begin(), specification.entries().end(), [](const auto& entry) {
-    if (!entry->required || entry->kind == Kind::blocks) return true;
-    return entry->kind == Kind::section && has_defaults_only(*entry->nested);
-  });
-}
-
 /// Keys that Specification::blocks adds to a block's own.
 std::vector<std::string> block_keys(const Specification& specification) {
   std::vector<std::string> keys;
@@ -86,8 +78,8 @@ void Checker::check_keys(const YamlNode& block, const Specification& specificati
   for (const YamlPair& pair : block.pairs) {
     if (std::find(known.begin(), known.end(), pair.key) != known.end()) continue;
     std::string expected = known.empty() ? "no keys" : fmt::format("one of: {}", fmt::join(known, ", "));
-    mistakes_.add(pair.location,
-                  {join(path, shown(pair.key)), "unknown key", std::move(expected), nearest(pair.key, known)});
+    std::string meant = mistakes_.enough() ? "" : nearest(pair.key, known);
+    mistakes_.add(pair.location, {join(path, shown(pair.key)), "unknown key", std::move(expected), std::move(meant)});
   }
 }
 
@@ -146,7 +138,7 @@ void Checker::check_missing(const YamlNode& block, const Entry& entry, const std
                             Teuchos::ParameterList& list) {
   if (entry.fallback.index() == 0) {
     if (!entry.required) return;
-    if (entry.kind == Kind::section && has_defaults_only(*entry.nested)) {
+    if (entry.kind == Kind::section && entry.nested->has_defaults_only()) {
       check_block(YamlNode::map(block.location), *entry.nested, path, {}, add_sublist(list, entry.key, path));
       return;
     }

@@ -18,9 +18,19 @@ std::string why_unreadable(const std::string& path) {
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) return "there is no such file";
   if (status.type() == std::filesystem::file_type::directory) return "this is a folder";
+  // Opening a pipe would wait for its other end.
+  if (status.type() == std::filesystem::file_type::fifo) return "this is a pipe";
+  if (status.type() == std::filesystem::file_type::socket) return "this is a socket";
   errno = 0;
   if (!std::ifstream(path)) return fmt::format("the file cannot be opened: {}", std::strerror(errno));
   return {};
+}
+
+/// Of a data file, which is read to its end by whoever wants it.
+std::string why_no_data(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::status(path, error).type() == std::filesystem::file_type::character) return "this is a device";
+  return why_unreadable(path);
 }
 
 InputFiles::Contents contents(const std::string& path) {
@@ -98,7 +108,7 @@ const std::string& InputFiles::trouble(const std::string& path) {
   const auto known = troubles_.find(path);
   if (known != troubles_.end()) return known->second;
   if (received_) throw_not_received(path);
-  return troubles_[path] = why_unreadable(path);
+  return troubles_[path] = why_no_data(path);
 }
 
 }  // namespace kiln

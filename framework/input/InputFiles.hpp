@@ -32,7 +32,8 @@ class InputFiles {
   void promise(const std::string& path) { troubles_[path].clear(); }
   /// All files that were asked for by trouble(), absolute.
   std::vector<std::string> data_files() const;
-  /// Why the file cannot be opened; empty: it can. `path` is absolute.
+  /// Why a data file cannot be opened; empty: it can. Devices and pipes have no end one could count on, or no
+  /// beginning. `path` is absolute.
   const std::string& trouble(const std::string& path);
 
  private:

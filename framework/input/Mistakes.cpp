@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <tuple>
+
+#include "framework/input/TextCheck.hpp"
 
 namespace kiln {
 
 std::string to_string(const Location& location) {
-  return location.line == 0 ? location.file : fmt::format("{}:{}:{}", location.file, location.line, location.column);
+  const std::string file = printable(location.file);
+  return location.line == 0 ? file : fmt::format("{}:{}:{}", file, location.line, location.column);
 }
 
 void Mistakes::add(const Location& location, Problem problem) { mistakes_.push_back({location, std::move(problem)}); }
@@ -22,42 +26,50 @@ InputError Mistakes::error() const {
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](const Mistake& a, const Mistake& b) { return position(a) < position(b); });
   std::vector<Problem> problems;
+  std::set<std::pair<std::string, std::string>> told;
   for (Mistake& mistake : sorted) {
     std::string& path = mistake.problem.path;
     const std::string place = to_string(mistake.location);
     path = path.empty() ? place : fmt::format("{}: {}", place, path);
     // A file that is included twice tells its mistakes once.
-    const bool told = std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
-      return problem.path == path && problem.found == mistake.problem.found;
-    });
-    if (!told) problems.push_back(std::move(mistake.problem));
+    if (told.emplace(path, mistake.problem.found).second) problems.push_back(std::move(mistake.problem));
+  }
+  if (problems.size() > most_told) {
+    const std::string file = files_.empty() ? "" : files_.front();
+    const Problem rest{file, fmt::format("{} more mistakes", problems.size() - most_told), {}, {}};
+    problems.resize(most_told);
+    problems.push_back(rest);
   }
   return InputError(std::move(problems));
 }
 
-std::string shown(const std::string& text) {
-  constexpr std::size_t longest = 60;
+namespace {
+
+std::string escaped(const std::string& text, std::size_t longest) {
   std::string result;
   std::size_t characters = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues_character = (byte & 0xc0) == 0x80;
-    if (!continues_character && ++characters > longest) {
-      result += "...";
-      break;
-    }
-    if (c == '\n') {
+  for (std::size_t i = 0; i < text.size();) {
+    if (++characters > longest) return result + "...";
+    const std::size_t length = character_length(text, i);
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte == '\n') {
       result += "\\n";
-    } else if (c == '\t') {
+    } else if (byte == '\t') {
       result += "\\t";
-    } else if (byte < 0x20 || byte == 0x7f) {
+    } else if (length == 0 || byte < 0x20 || byte == 0x7f) {
       result += fmt::format("\\x{:02x}", byte);
     } else {
-      result += c;
+      result += text.substr(i, length);
     }
+    i += std::max<std::size_t>(1, length);
   }
   return result;
 }
+
+}  // namespace
+
+std::string printable(const std::string& text) { return escaped(text, text.size()); }
+std::string shown(const std::string& text) { return escaped(text, 60); }
 
 std::string in_quotes(const std::string& text) { return "'" + shown(text) + "'"; }
 

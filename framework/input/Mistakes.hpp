@@ -16,10 +16,14 @@ class Mistakes {
   void begin_file(const std::string& file) { files_.push_back(file); }
   void add(const Location& location, Problem problem);
   std::size_t count() const { return mistakes_.size(); }
-  /// All mistakes by their position, "file:line:column: " before each.
+  /// Whether there are more already than will be told: no need to look for suggestions.
+  bool enough() const { return mistakes_.size() >= most_told; }
+  /// All mistakes by their position, "file:line:column: " before each; of very many the first ones, and their number.
   InputError error() const;
 
  private:
+  static constexpr std::size_t most_told = 50;
+
   struct Mistake {
     Location location;
     Problem problem;
@@ -28,7 +32,9 @@ class Mistakes {
   std::vector<Mistake> mistakes_;
 };
 
-/// `text` for a message: control characters escaped, cut after 60 characters.
+/// `text` for a message: control characters and bytes that are no UTF-8 escaped.
+std::string printable(const std::string& text);
+/// The same, cut after 60 characters.
 std::string shown(const std::string& text);
 /// The same in single quotes.
 std::string in_quotes(const std::string& text);

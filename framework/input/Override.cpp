@@ -8,6 +8,9 @@
 namespace kiln {
 namespace {
 
+/// As deep as a file may be.
+constexpr std::size_t deepest_path = 64;
+
 std::vector<std::string> split(const std::string& path) {
   std::vector<std::string> keys(1);
   for (const char c : path) {
@@ -29,7 +32,7 @@ bool is_index(const std::string& key) {
 }  // namespace
 
 void apply_override(const std::string& override_text, YamlNode& root, Mistakes& mistakes) {
-  const Location place{fmt::format("--set {}", override_text), 0, 0};
+  const Location place{fmt::format("--set {}", shown(override_text)), 0, 0};
   const std::size_t equals = override_text.find('=');
   if (equals == std::string::npos) {
     mistakes.add(place, {{}, "no '='", "path.to.key=value", {}});
@@ -38,6 +41,11 @@ void apply_override(const std::string& override_text, YamlNode& root, Mistakes& 
   const std::vector<std::string> keys = split(override_text.substr(0, equals));
   if (std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key.empty(); })) {
     mistakes.add(place, {{}, "an empty key", "path.to.key=value", {}});
+    return;
+  }
+  if (keys.size() > deepest_path) {
+    mistakes.add(place,
+                 {{}, fmt::format("a path of {} keys", keys.size()), fmt::format("at most {}", deepest_path), {}});
     return;
   }
   YamlNode value;

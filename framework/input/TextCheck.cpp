@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 namespace kiln {
-namespace {
 
-/// Length of the UTF-8 character at `i`; 0: not one (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
 std::size_t character_length(const std::string& text, std::size_t i) {
   const auto byte = [&](std::size_t k) {
     return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : static_cast<unsigned char>(0);
@@ -28,8 +26,6 @@ std::size_t character_length(const std::string& text, std::size_t i) {
   }
   return 0;
 }
-
-}  // namespace
 
 bool check_text(const std::string& text, const Location& origin, Mistakes& mistakes) {
   int line = 1;

@@ -357,6 +357,18 @@ std::string with_article(const Dimension& dimension) {
   return (vowel ? "an " : "a ") + name;
 }
 
+std::vector<std::string> symbols_of(const Dimension& dimension) {
+  std::vector<std::string> known;
+  for (const Symbol& symbol : symbols()) {
+    if (symbol.dimension != dimension) continue;
+    known.emplace_back(symbol.text);
+    for (const Prefix& prefix : prefixes) {
+      if (symbol.takes_prefix) known.push_back(std::string(prefix.text) + symbol.text);
+    }
+  }
+  return known;
+}
+
 Unit parse_unit(std::string_view text) { return UnitParser(text).parse(); }
 
 Quantity parse_quantity(std::string_view text) {

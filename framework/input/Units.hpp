@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kiln {
 
@@ -32,6 +33,9 @@ struct Unit {
 /// products ("Pa s", "Pa*s", "Pa·s") and quotients ("W/m/K", "W/(m K)"). A product after a quotient needs parentheses:
 /// "W/m K" is refused, since readers disagree on it. Throws InputError.
 Unit parse_unit(std::string_view text);
+
+/// Symbols of that dimension, with their prefixes: "m", "um", "mm", … for a length. None for a product of several.
+std::vector<std::string> symbols_of(const Dimension& dimension);
 
 /// A number with or without a unit.
 struct Quantity {

@@ -57,6 +57,9 @@ namespace {
 
 constexpr std::size_t deepest = 64;
 constexpr std::size_t most_aliased = 100000;
+constexpr std::size_t most_values = 200000;
+/// Keys are looked up one after the other.
+constexpr std::size_t most_keys = 5000;
 
 /// What ends the parsing of a document.
 struct Refusal {
@@ -119,6 +122,9 @@ class TreeBuilder final : public YAML::EventHandler {
                 const std::string& value) override {
     check_tag(mark, tag);
     check_quotes(mark, tag);
+    check_characters(mark, value);
+    count_value(mark);
+    if (too_many_keys()) throw Refusal{mark, fmt::format("more than {} keys in one block", most_keys), {}};
     add(YamlNode::scalar(value, location(mark)), anchor, tag);
   }
 
@@ -179,8 +185,19 @@ class TreeBuilder final : public YAML::EventHandler {
     throw Refusal{mark, "the quotes that open here are not closed", {}};
   }
 
+  /// Escapes can write what check_text() keeps out.
+  static void check_characters(const YAML::Mark& mark, const std::string& value) {
+    if (value.find('\0') == std::string::npos) return;
+    throw Refusal{mark, fmt::format("the text {} holds the character NUL", in_quotes(value)), "a text without it"};
+  }
+
+  void count_value(const YAML::Mark& mark) {
+    if (++values_ > most_values) throw Refusal{mark, fmt::format("more than {} values", most_values), {}};
+  }
+
   void open(YamlNode node, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     check_tag(mark, tag);
+    count_value(mark);
     if (frames_.size() == deepest) throw Refusal{mark, fmt::format("more than {} levels of blocks", deepest), {}};
     node.location = location(mark);
     Frame frame;
@@ -188,6 +205,8 @@ class TreeBuilder final : public YAML::EventHandler {
     frame.anchor = anchor;
     frames_.push_back(std::move(frame));
   }
+
+  bool too_many_keys() const { return !frames_.empty() && frames_.back().node.pairs.size() > most_keys; }
 
   void close() {
     Frame frame = std::move(frames_.back());
@@ -246,6 +265,10 @@ class TreeBuilder final : public YAML::EventHandler {
       for (YamlNode& item : merged.items) merge(item, into);
     } else if (merged.kind == YamlNode::Kind::map) {
       for (YamlPair& pair : merged.pairs) {
+        if (into.pairs.size() > most_keys) {
+          return mistakes_.add(merged.location,
+                               {path(), fmt::format("more than {} keys in one block", most_keys), {}, {}});
+        }
         if (into.find(pair.key) == nullptr) into.pairs.push_back(std::move(pair));
       }
     } else {
@@ -269,6 +292,7 @@ class TreeBuilder final : public YAML::EventHandler {
   Mistakes& mistakes_;
   bool started_ = false;
   std::size_t aliased_ = 0;
+  std::size_t values_ = 0;
   YamlNode root_;
   std::vector<Frame> frames_;
   std::map<YAML::anchor_t, YamlNode> anchors_;

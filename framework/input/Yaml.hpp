@@ -40,7 +40,8 @@ struct YamlPair {
 /// The YAML text of one document. Places in it are `origin`'s file with their line and column; an origin of line 0 is
 /// itself the place of everything. Returns false if the text cannot be understood; what is wrong goes to `mistakes`,
 /// as do duplicated keys, after which parsing goes on. Refuses what is no text, tabs in the indentation, several
-/// documents, cyclic aliases, aliases that expand to more than 100,000 values, and more than 64 levels.
+/// documents, cyclic aliases, aliases that expand to more than 100,000 values, more than 200,000 values in all or 5,000
+/// keys in a block, more than 64 levels, and the character NUL, at which the system would end a file's name.
 bool parse_yaml(std::string text, const Location& origin, YamlNode& root, Mistakes& mistakes);
 
 }  // namespace kiln

@@ -248,13 +248,13 @@ void FullOrder::save(hdf5::Group& group) const {
 }
 
 void FullOrder::restore(const hdf5::Group& group) {
-  const int age = static_cast<int>(group.integer("jacobian_age"));
+  const int age = static_cast<int>(group.integer("jacobian_age", -1, std::numeric_limits<int>::max()));
   if (age >= 0) {
     const VectorView x("kiln::method::restored state", halo_.row_size());
     restore_unknown(group, "jacobian_state", *halo_.rows(), x);
     Kokkos::deep_copy(state_.rows(), x);
     state_.fill();
-    refresh_jacobian(x, group.real("jacobian_time"));
+    refresh_jacobian(x, group.finite_real("jacobian_time"));
   }
   age_ = age;
 }

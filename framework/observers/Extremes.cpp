@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/files/CsvTable.hpp"
+#include "framework/files/Together.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/RunReport.hpp"
 
@@ -111,9 +112,14 @@ void Extremes::add_row(const Moment& moment) {
 
 void Extremes::finish(RunReport& report) {
   log_->check();
+  CsvTable table;
+  const std::filesystem::path path = context_.folder / file_name;
+  on_root(*context_.communicator, path.string(), [&]() -> std::optional<Fault> {
+    table = read_csv(path);
+    return std::nullopt;
+  });
   nlohmann::json section;
   if (context_.communicator->getRank() == 0) {
-    const CsvTable table = read_csv(context_.folder / file_name);
     for (std::size_t component = 0; component < fields_.size(); ++component) {
       nlohmann::json& entry = section[fields_[component].name];
       entry["unit"] = fields_[component].unit;

@@ -1,8 +1,11 @@
 #include "framework/observers/FieldObserver.hpp"
 
+#include <fmt/format.h>
+
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
+#include "framework/base/Error.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/RunReport.hpp"
@@ -10,8 +13,16 @@
 namespace kiln {
 namespace {
 
+/// Each frame is a dataset that HDF5 keeps account of.
+constexpr int most_frames = 100000;
+
 /// 0, every, 2 every, … and the last step.
-std::vector<int> output_steps(int every, int last_step) {
+std::vector<int> output_steps(const Teuchos::ParameterList& list, int last_step) {
+  const int every = list.get<int>("every");
+  if (last_step / every > most_frames) {
+    throw InputError(list.name() + ".every", fmt::format("gives {} frames", last_step / every),
+                     fmt::format("at most {}", most_frames));
+  }
   std::vector<int> steps;
   for (long long step = 0; step < last_step; step += every) steps.push_back(static_cast<int>(step));
   steps.push_back(last_step);
@@ -39,7 +50,7 @@ Specification FieldObserver::specification() {
 
 FieldObserver::FieldObserver(const Teuchos::ParameterList& list, const Context& context)
     : context_(context),
-      steps_(output_steps(list.get<int>("every"), context.last_step)),
+      steps_(output_steps(list, context.last_step)),
       u_("kiln::observers::state", context.method.positions().extent(0) * context.method.fields().size()) {}
 
 void FieldObserver::begin() {

@@ -59,9 +59,16 @@ struct Axes {
   std::vector<std::vector<double>> values;
 };
 
-ParameterPoints combinations(const Axes& axes) {
+constexpr std::size_t most_points = 1000000;
+
+ParameterPoints combinations(const Axes& axes, const std::string& path) {
   std::size_t count = 1;
-  for (const std::vector<double>& values : axes.values) count *= values.size();
+  for (const std::vector<double>& values : axes.values) {
+    count *= values.size();
+    if (count > most_points) {
+      throw InputError(path + ".grid", fmt::format("gives more than {} combinations", most_points), "fewer values");
+    }
+  }
   ParameterPoints points{axes.names, {}};
   for (std::size_t point = 0; point < count; ++point) {
     std::vector<double> one(axes.values.size());
@@ -213,7 +220,7 @@ ParameterPoints points_of(const Teuchos::ParameterList& block, const Parameters&
   const bool grid = block.get<bool>("grid");
   const Axes axes = block.isSublist("points") ? listed(block.sublist("points"), parameters, grid)
                                               : tabulated(block.get<std::string>("file"), parameters);
-  return grid ? combinations(axes) : rows(axes);
+  return grid ? combinations(axes, block.name()) : rows(axes);
 }
 
 }  // namespace kiln

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Memory.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/observers/Probes.hpp"
 #include "framework/queries/QueryPoints.hpp"
@@ -81,6 +82,14 @@ QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Commu
     places_.push_back(probe.particle.local);
   }
   answers_.fields = method_->fields();
+  const double numbers = static_cast<double>(answers_.points.count()) * static_cast<double>(places_.size()) *
+                         (static_cast<double>(span_.last_step) / every_ + 1.0);
+  if (numbers * sizeof(double) > machine_memory()) {
+    throw InputError(
+        "queries",
+        fmt::format("{} points and {} probes give {:.3g} numbers", answers_.points.count(), places_.size(), numbers),
+        "what this machine's memory holds; raise output.probes.every");
+  }
   for (int step = 0; step <= span_.last_step; ++step) {
     if (!is_recorded(step)) continue;
     answers_.steps.push_back(step);

@@ -45,25 +45,12 @@ std::string origin(const Registration& registration) {
   return registration.library.empty() ? "built in" : registration.library;
 }
 
-std::string default_column(const Entry& entry) {
-  if (entry.fallback.index() != 0) return default_text(entry);
-  return entry.required ? "required" : "optional";
-}
-
-std::string values_column(const Entry& entry) {
-  if (entry.kind == Kind::choice) return fmt::format("{}", fmt::join(entry.choices, " | "));
-  if (entry.kind == Kind::component || entry.kind == Kind::components || entry.kind == Kind::blocks) {
-    return fmt::format("{}", fmt::join(catalogue::names(entry.category), " | "));
-  }
-  return range_text(entry);
-}
-
 void add_rows(const Specification& specification, const std::string& indent, Table<6>& table) {
   for (const auto& entry : specification.entries()) {
     const bool has_unit = entry->kind == Kind::real || entry->kind == Kind::reals;
     const bool blocks = entry->kind == Kind::blocks;
     table.push_back({indent + (blocks ? "<name>" : entry->key), type_text(*entry), has_unit ? entry->unit : "",
-                     blocks ? "optional" : default_column(*entry), values_column(*entry), entry->help});
+                     default_column(*entry), fmt::format("{}", fmt::join(values_column(*entry), " | ")), entry->help});
     if (entry->nested) add_rows(*entry->nested, indent + "  ", table);
   }
 }

@@ -150,6 +150,21 @@ std::string type_text(const Entry& entry) {
 
 std::string default_text(const Entry& entry) { return std::visit(DefaultText(), entry.fallback); }
 
+std::string default_column(const Entry& entry) {
+  if (entry.kind == Kind::blocks) return "optional";
+  if (entry.fallback.index() != 0) return default_text(entry);
+  return entry.required ? "required" : "optional";
+}
+
+std::vector<std::string> values_column(const Entry& entry) {
+  if (entry.kind == Kind::choice) return entry.choices;
+  if (entry.kind == Kind::component || entry.kind == Kind::components || entry.kind == Kind::blocks) {
+    return catalogue::names(entry.category);
+  }
+  const std::string range = range_text(entry);
+  return range.empty() ? std::vector<std::string>() : std::vector<std::string>{range};
+}
+
 std::string yaml_text(const std::string& text) {
   YAML::Emitter emitter;
   // As inside a list in brackets, where more characters need quotes.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "framework/registry/Specification.hpp"
 
@@ -16,6 +17,10 @@ std::string bound_text(double bound, const Entry& entry);
 std::string type_text(const Entry& entry);
 /// The default as it stands in YAML; empty without one.
 std::string default_text(const Entry& entry);
+/// What stands in a table of keys: the default, or "required", or "optional".
+std::string default_column(const Entry& entry);
+/// Likewise: choices, registered names or the range.
+std::vector<std::string> values_column(const Entry& entry);
 /// A text as YAML, in quotes where it needs them.
 std::string yaml_text(const std::string& text);
 /// The key under which a registered component stands where Specification::blocks allows it.

@@ -1,5 +1,7 @@
 #include "framework/registry/Specification.hpp"
 
+#include <algorithm>
+
 namespace kiln {
 
 EntryBuilder& EntryBuilder::unit(std::string si_unit) {
@@ -57,6 +59,13 @@ EntryBuilder Specification::add(Entry::Kind kind, std::string key, std::string h
   entry->nested = std::move(nested);
   entries_.push_back(std::move(entry));
   return EntryBuilder(*entries_.back());
+}
+
+bool Specification::has_defaults_only() const {
+  return std::all_of(entries_.begin(), entries_.end(), [](const auto& entry) {
+    if (!entry->required || entry->kind == Entry::Kind::blocks) return true;
+    return entry->kind == Entry::Kind::section && entry->nested->has_defaults_only();
+  });
 }
 
 EntryBuilder Specification::real(std::string key, std::string help) {

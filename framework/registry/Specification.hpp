@@ -114,6 +114,9 @@ class Specification {
   const std::vector<std::unique_ptr<Entry>>& entries() const { return entries_; }
   const std::vector<Check>& checks() const { return checks_; }
 
+  /// Whether a block of these keys may be left out although it is wanted, since all of them have defaults.
+  bool has_defaults_only() const;
+
  private:
   EntryBuilder add(Entry::Kind kind, std::string key, std::string help, std::string category = {},
                    std::shared_ptr<const Specification> nested = nullptr);

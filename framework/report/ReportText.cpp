@@ -77,7 +77,8 @@ bool is_several_lines(const nlohmann::json& value) {
 void add_lines(const std::string& prefix, const nlohmann::json& value, std::vector<Line>& lines,
                std::vector<std::string>& texts) {
   if (value.is_object()) {
-    const std::string unit = value.value("unit", "");
+    const auto told = value.find("unit");
+    const std::string unit = told != value.end() && told->is_string() ? told->get<std::string>() : "";
     for (const auto& [key, entry] : value.items()) {
       if (key == "unit" && value.size() > 1) continue;
       const auto [name, own_unit] = name_and_unit(key);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 
 namespace kiln {
@@ -15,10 +16,11 @@ nlohmann::json read_report(const std::filesystem::path& folder, const Communicat
   on_root(communicator, path, [&]() -> std::optional<Fault> {
     std::ifstream file(path);
     if (!file) return system_fault("read", errno);
+    if (std::filesystem::is_directory(path)) return Fault{"", "is a folder", "a report"};
     text << file.rdbuf();
     return std::nullopt;
   });
-  nlohmann::json facts = nlohmann::json::parse(broadcast(communicator, text.str()), nullptr, false);
+  nlohmann::json facts = parse_json(broadcast(communicator, text.str()));
   if (!facts.is_object())
     throw FileError(path, "", "is no JSON object", "a report that `kiln run` or `kiln train` wrote");
   return facts;

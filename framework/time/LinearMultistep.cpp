@@ -169,7 +169,7 @@ void LinearMultistep::save(hdf5::Group& group) const {
 }
 
 void LinearMultistep::restore(const hdf5::Group& group) {
-  const std::vector<double> times = group.reals("times", {0}).values;
+  const std::vector<double> times = group.finite_reals("times", {0}).values;
   if (times.empty() || times.size() > coefficients_.steps()) {
     throw FileError(group.file(), group.path() + "/times", fmt::format("there are {} earlier states", times.size()),
                     fmt::format("1 to {} of them for this time scheme", coefficients_.steps()));

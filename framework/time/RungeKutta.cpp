@@ -71,6 +71,6 @@ SolveReport RungeKutta::advance(VectorView x, double time) {
 
 void RungeKutta::save(hdf5::Group& group) const { group.attribute("time", time_); }
 
-void RungeKutta::restore(const hdf5::Group& group) { time_ = group.real("time"); }
+void RungeKutta::restore(const hdf5::Group& group) { time_ = group.finite_real("time"); }
 
 }  // namespace kiln

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Memory.hpp"
 #include "physics/sph/Distribution.hpp"
 #include "physics/sph/PairWeights.hpp"
 
@@ -17,11 +18,64 @@ namespace {
 
 std::string text(const Point& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p[0], p[1], p[2]); }
 
+/// Beyond these, squares and cubes leave double precision, or the grid of the search its integers.
+constexpr double farthest = 1e6;
+constexpr double shortest_support = 1e-12;
+/// A smoothing length of four spacings gives 2,144 neighbours.
+constexpr double most_neighbours = 3000.0;
+
+/// Of some particles, counted one by one.
+double mean_neighbours(const std::vector<Point>& positions, double support) {
+  const std::size_t stride = std::max<std::size_t>(1, positions.size() / 64);
+  double pairs = 0.0, asked = 0.0;
+  for (std::size_t i = 0; i < positions.size(); i += stride) {
+    asked += 1.0;
+    for (const Point& other : positions) {
+      double square = 0.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double difference = positions[i][axis] - other[axis];
+        square += difference * difference;
+      }
+      if (square < support * support) pairs += 1.0;
+    }
+  }
+  return pairs / asked - 1.0;
+}
+
+void check_support(const ParticleCloud& cloud, const PairSettings& settings) {
+  if (!(settings.support >= shortest_support) || !(settings.support <= farthest)) {
+    throw InputError(settings.path + ".smoothing_length",
+                     fmt::format("neighbours lie within 2h = {} m", settings.support),
+                     fmt::format("{} m to {} m", shortest_support, farthest));
+  }
+  const auto particles = static_cast<double>(cloud.positions.size());
+  const double neighbours = mean_neighbours(cloud.positions, settings.support);
+  constexpr double bytes_a_pair = sizeof(double) + sizeof(LocalIndex);
+  if (neighbours > most_neighbours || particles * neighbours * bytes_a_pair > machine_memory()) {
+    throw InputError(
+        settings.path + ".smoothing_length",
+        fmt::format("about {:.3g} particles lie within 2h = {:.6g} m of one", neighbours, settings.support),
+        fmt::format("at most {:g}, and pairs that fit into memory; is the spacing right?", most_neighbours));
+  }
+}
+
+void check_masses(const ParticleCloud& cloud, const PairSettings& settings) {
+  for (std::size_t id = 0; id < cloud.volumes.size(); ++id) {
+    const double mass = settings.density * cloud.volumes[id];
+    if (std::isnormal(mass) && mass > 0.0 && std::isfinite(cloud.heated_areas[id])) continue;
+    throw InputError(
+        settings.path + ".particles",
+        fmt::format("particle {} has the mass {} kg and the heated area {} m^2", id, mass, cloud.heated_areas[id]),
+        "a part of a size that double precision can tell");
+  }
+}
+
 void check_positions(const ParticleCloud& cloud, const std::string& path) {
   for (std::size_t id = 0; id < cloud.positions.size(); ++id) {
     const Point& p = cloud.positions[id];
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
-      throw InputError(path, fmt::format("particle {} lies at {}", id, text(p)), "finite coordinates");
+    if (!(std::abs(p[0]) <= farthest) || !(std::abs(p[1]) <= farthest) || !(std::abs(p[2]) <= farthest)) {
+      throw InputError(path, fmt::format("particle {} lies at {}", id, text(p)),
+                       fmt::format("finite coordinates, within {} m of 0", farthest));
     }
   }
   if (cloud.positions.empty()) throw InputError(path, "there is no particle", "at least 2");
@@ -122,6 +176,8 @@ Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids,
 HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings,
                         const Teuchos::RCP<const Communicator>& communicator) {
   check_positions(cloud, settings.path + ".particles");
+  check_support(cloud, settings);
+  check_masses(cloud, settings);
   if (settings.mirrored && !cloud.faces) {
     throw InputError(settings.path + ".boundary", "mirrored boundaries need cells that fill a box",
                      "particles: {type: lattice, placement: cells, …}, or boundary: as printed");

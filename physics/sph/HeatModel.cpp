@@ -62,12 +62,18 @@ Specification HeatModel::specification() {
       problems.push_back(
           {"to", fmt::format("{} K is not above from = {} K", list.get<double>("to"), list.get<double>("from")),
            "a rising range", ""});
+    } else if (list.get<double>("step") > list.get<double>("to") - list.get<double>("from")) {
+      problems.push_back(
+          {"step", fmt::format("{} K is wider than the table", list.get<double>("step")), "at most to - from", ""});
     }
   });
 
   Specification specification;
   specification.component<Particles>("particles", "where the particles are");
-  specification.real("smoothing_length", "h in multiples of the particles' (widest) spacing").above(0).defaults_to(1.5);
+  specification.real("smoothing_length", "h in multiples of the particles' (widest) spacing")
+      .above(0)
+      .at_most(10)
+      .defaults_to(1.5);
   specification.component<Kernel>("kernel", "smoothing kernel, support 2h").defaults_to("cubic spline");
   specification.component<Material>("material", "conductivity, specific heat and density over temperature");
   specification.section("table", "the table the material's properties are interpolated in", std::move(table));

@@ -167,15 +167,23 @@ HeatDomain restored_domain(const hdf5::Group& group, const Teuchos::RCP<const Co
   const std::vector<long long> sources = group.integers("sources", {0}).values;
   const std::vector<long long> offsets = group.integers("offsets", {rows.size() + 1}).values;
   const std::vector<long long> neighbours = group.integers("neighbours", {0}).values;
-  const std::vector<double> weights = group.reals("weights", {neighbours.size()}).values;
-  const std::vector<double> areas = group.reals("heated_areas", {rows.size()}).values;
-  const std::vector<double> masses = group.reals("masses", {sources.size()}).values;
-  const std::vector<double> positions = group.reals("positions", {sources.size(), 3}).values;
+  const std::vector<double> weights = group.finite_reals("weights", {neighbours.size()}).values;
+  const std::vector<double> areas = group.finite_reals("heated_areas", {rows.size()}).values;
+  const std::vector<double> masses = group.finite_reals("masses", {sources.size()}).values;
+  const std::vector<double> positions = group.finite_reals("positions", {sources.size(), 3}).values;
   const auto require = [&group](bool right, const char* name, const char* expected) {
     if (!right) throw FileError(group.file(), group.path() + "/" + name, "does not fit the sample", expected);
   };
-  require(std::is_sorted(rows.begin(), rows.end()), "rows", "ascending ids");
-  require(std::is_sorted(sources.begin(), sources.end()), "sources", "ascending ids");
+  const auto rising = [](const std::vector<long long>& ids) {
+    return !ids.empty() && ids.front() >= 0 &&
+           std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<long long>()) == ids.end();
+  };
+  const auto positive = [](double value) { return value > 0.0; };
+  require(rising(rows), "rows", "ascending ids from 0 on, at least one");
+  require(rising(sources), "sources", "ascending ids from 0 on, at least one");
+  require(std::all_of(masses.begin(), masses.end(), positive), "masses", "masses above 0");
+  require(std::all_of(areas.begin(), areas.end(), [](double area) { return area >= 0.0; }), "heated_areas",
+          "areas of at least 0");
   require(offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end()) &&
               offsets.back() == static_cast<long long>(neighbours.size()),
           "offsets", "a rise from 0 to the number of neighbours");
@@ -223,11 +231,18 @@ namespace {
 
 MaterialTable restored_table(const hdf5::Group& group) {
   const hdf5::Group table = group.group("material");
-  const hdf5::Array<double> values = table.reals("properties", {0, 3});
+  const hdf5::Array<double> values = table.finite_reals("properties", {0, 3});
   if (values.shape[0] < 2) {
     throw FileError(table.file(), table.path() + "/properties", "has fewer than 2 rows", "a table of properties");
   }
-  return {table.real("from"), table.real("step"), values.values};
+  const double from = table.finite_real("from"), step = table.finite_real("step");
+  if (!(step > 0.0))
+    throw FileError(table.file(), table.path() + " attribute 'step'", fmt::format("is {}", step), "above 0");
+  if (!std::all_of(values.values.begin(), values.values.end(), [](double value) { return value > 0.0; })) {
+    throw FileError(table.file(), table.path() + "/properties", "holds values that are not above 0",
+                    "a table of properties");
+  }
+  return {from, step, values.values};
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "framework/base/Memory.hpp"
 #include "framework/registry/Registry.hpp"
 #include "physics/sph/Particles.hpp"
 
@@ -61,6 +63,13 @@ class Lattice final : public Particles {
       size_[axis] = size[axis];
       count_[axis] = count[axis];
       spacing_[axis] = size[axis] / (cells_ ? count[axis] : count[axis] - 1);
+    }
+    const double number = static_cast<double>(count[0]) * count[1] * count[2];
+    constexpr double bytes = sizeof(Point) + 2 * sizeof(double);
+    if (number > std::numeric_limits<LocalIndex>::max() || number * bytes > machine_memory()) {
+      throw InputError(list.name() + ".count", fmt::format("{:.6g} particles in all", number),
+                       fmt::format("at most {:.6g}: what this machine's memory holds",
+                                   std::min<double>(std::numeric_limits<LocalIndex>::max(), machine_memory() / bytes)));
     }
   }
 

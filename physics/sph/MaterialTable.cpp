@@ -11,6 +11,8 @@
 namespace kiln {
 namespace {
 
+constexpr int most_intervals = 1000000;
+
 void check(double value, const char* property, const char* unit, double u, const std::string& path) {
   if (std::isfinite(value) && value > 0.0) return;
   throw InputError(path, fmt::format("the {} at {} K is {}", property, u, value),
@@ -22,9 +24,9 @@ std::vector<double> tabulated(const Material& material, double from, double to, 
     throw InputError(path, fmt::format("the table of properties goes from {} K to {} K", from, to), "a rising range");
   }
   const double intervals = std::ceil((to - from) / step * (1.0 - 1e-12));
-  if (!(step > 0.0) || !(intervals < 1e8)) {
+  if (!(step > 0.0) || !(intervals <= most_intervals)) {
     throw InputError(path, fmt::format("the table of properties has steps of {} K", step),
-                     "a step above 0 that gives at most 1e8 entries");
+                     fmt::format("a step above 0 that gives at most {} entries", most_intervals));
   }
   std::vector<double> values;
   for (int i = 0; i <= static_cast<int>(intervals); ++i) {

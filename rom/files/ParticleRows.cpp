@@ -107,18 +107,14 @@ void ParticleTable::write(hdf5::Group& group) const {
   group.write("modes", modes);
 }
 
-ParticleTable ParticleTable::read(const hdf5::Group& group, int components, int modes) {
+ParticleTable ParticleTable::read(const hdf5::Group& group, std::vector<GlobalIndex> ids, int components, int modes) {
   ParticleTable table;
-  const hdf5::Array<long long> ids = group.integers("ids", {0});
-  table.ids.assign(ids.values.begin(), ids.values.end());
+  table.ids = std::move(ids);
   table.components = components;
   const std::size_t count = table.ids.size();
-  if (std::adjacent_find(table.ids.begin(), table.ids.end(), std::greater_equal<GlobalIndex>()) != table.ids.end()) {
-    throw FileError(group.file(), group.path() + "/ids", "particle ids are not in ascending order");
-  }
-  table.positions = group.reals("positions", {count, 3}).values;
-  table.reference = group.reals("reference", {count, static_cast<std::size_t>(components)});
-  table.modes = group.reals("modes", {count, static_cast<std::size_t>(modes) * components});
+  table.positions = group.finite_reals("positions", {count, 3}).values;
+  table.reference = group.finite_reals("reference", {count, static_cast<std::size_t>(components)});
+  table.modes = group.finite_reals("modes", {count, static_cast<std::size_t>(modes) * components});
   return table;
 }
 

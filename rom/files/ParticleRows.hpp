@@ -27,7 +27,8 @@ struct ParticleTable {
                               const VectorView& reference, const std::vector<MatrixView>& modes, int components);
   /// Datasets ids, positions, reference and modes of a group.
   void write(hdf5::Group& group) const;
-  static ParticleTable read(const hdf5::Group& group, int components, int modes);
+  /// `ids` are the particles of the group, checked.
+  static ParticleTable read(const hdf5::Group& group, std::vector<GlobalIndex> ids, int components, int modes);
 
   /// Entries of the particles, × components, as reductions compute with them: unfolded.
   VectorView reference_entries() const;

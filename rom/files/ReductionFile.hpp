@@ -27,9 +27,14 @@ class ReductionFile {
   /// The file the block `method` names, or reduction.h5 in `output.directory`.
   static std::filesystem::path path(const Teuchos::ParameterList& input);
 
-  /// Opens the file of a run and checks that it belongs to the input's model. Throws FileError. Collective.
+  /// Opens the file of a run and checks that it is whole and belongs to the input's model. Throws FileError.
+  /// Collective.
   ReductionFile(const Teuchos::ParameterList& input, const Teuchos::RCP<const Communicator>& communicator);
 
+  /// Throws FileError unless the file is of a model with so many particles and components.
+  void require_size(const Map& rows, std::size_t components) const;
+  /// Throws FileError unless a sampled model has so many components.
+  void require_components(std::size_t components) const;
   /// Throws FileError unless time step and scheme of the input are those of the training.
   void require_time(const Teuchos::ParameterList& input) const;
 
@@ -55,6 +60,8 @@ class ReductionFile {
   bool clustered() const;
   /// The group ClusteredMesh::write wrote.
   hdf5::Group clusters(std::size_t window) const;
+  /// The clusters of a window as particles, their ids above all particles'.
+  ParticleTable cluster_table(std::size_t window) const;
   /// The sources of all sample meshes and the particles a run must be able to tell.
   ParticleTable held_particles() const;
   /// The sampled particles of all windows in place of their sources. Throws FileError where nothing is clustered.
@@ -64,6 +71,11 @@ class ReductionFile {
  private:
   hdf5::Group window(std::size_t number) const;
   std::vector<TimeWindow> read_windows() const;
+  /// Ids of particles, ascending, at least one.
+  std::vector<GlobalIndex> ids(const hdf5::Group& group, const std::string& name) const;
+  /// The same from `first` to `last`.
+  std::vector<GlobalIndex> ids(const hdf5::Group& group, const std::string& name, GlobalIndex first,
+                               GlobalIndex last) const;
 
   hdf5::File file_;
   int components_;

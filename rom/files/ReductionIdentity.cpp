@@ -27,6 +27,17 @@ std::string named(const std::vector<YamlDifference>& entries) {
   return fmt::format("{}", fmt::join(lines, "; "));
 }
 
+/// Of a text of the file and one of this input.
+std::vector<YamlDifference> differences_to(const hdf5::Group& group, const std::string& attribute,
+                                           const std::string& here, const std::string& prefix,
+                                           const std::vector<std::string>& except) {
+  try {
+    return differences(group.text(attribute), here, prefix, except);
+  } catch (const InputError& error) {
+    throw FileError(group.file(), attribute, error.problems().front().found, "a checked block as YAML");
+  }
+}
+
 /// The scheme's block without its name, so that texts compare.
 std::string scheme_text(const Teuchos::ParameterList& time) { return to_yaml(time.sublist("scheme")); }
 
@@ -66,7 +77,7 @@ void require_model(const hdf5::Group& root, const Teuchos::ParameterList& model)
   }
   std::vector<std::string> live;
   for (const std::string& name : root.group("parameters").attribute_names()) live.push_back("model." + name);
-  const std::vector<YamlDifference> entries = differences(trained, to_yaml(model), "model", live);
+  const std::vector<YamlDifference> entries = differences_to(root, "model_input", to_yaml(model), "model", live);
   if (entries.empty()) return;
   throw FileError(root.file(), "", "belongs to another model: " + named(entries),
                   "the model it was trained for; or train again");
@@ -79,7 +90,7 @@ void require_time(const hdf5::Group& root, const Teuchos::ParameterList& time) {
   if (trained.real("step") != step) {
     entries.push_back({"time.step", fmt::format("{} s", trained.real("step")), fmt::format("{} s", step)});
   }
-  for (YamlDifference& entry : differences(trained.text("scheme"), scheme_text(time), "time.scheme", {})) {
+  for (YamlDifference& entry : differences_to(trained, "scheme", scheme_text(time), "time.scheme", {})) {
     entries.push_back(std::move(entry));
   }
   if (entries.empty()) return;

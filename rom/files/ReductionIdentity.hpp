@@ -12,7 +12,7 @@ namespace kiln {
 namespace reduction_identity {
 
 constexpr const char* format = "kiln reduction";
-constexpr long long version = 2;
+constexpr long long version = 3;
 
 /// Writes format, version, the model's checked block with its hash, its live parameters, time step and scheme.
 void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Parameters& parameters);

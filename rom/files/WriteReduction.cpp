@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Seal.hpp"
 #include "framework/report/Provenance.hpp"
 #include "rom/files/ParticleRows.hpp"
 #include "rom/files/Reduction.hpp"
@@ -57,9 +58,7 @@ void write_sample_mesh(hdf5::Group group, const WindowReduction& window, const s
   window.sample->save_sample(model);
 }
 
-}  // namespace
-
-void write_reduction(const std::string& file, const Reduction& reduction) {
+void write_contents(const std::string& file, const Reduction& reduction) {
   const Map& rows = *reduction.model.rows();
   const Teuchos::RCP<const Communicator> communicator = rows.getComm();
   const int components = static_cast<int>(reduction.model.fields().size());
@@ -104,6 +103,13 @@ void write_reduction(const std::string& file, const Reduction& reduction) {
   }
   particles.write("queries", std::vector<long long>(reduction.queries.begin(), reduction.queries.end()));
   root.flush();
+}
+
+}  // namespace
+
+void write_reduction(const std::string& file, const Reduction& reduction) {
+  write_contents(file, reduction);
+  hdf5::seal(file, *reduction.model.rows()->getComm());
 }
 
 }  // namespace kiln

@@ -52,6 +52,7 @@ PetrovGalerkin::Parts full_size_parts(const Method::Context& context,
   const ReductionFile reduction(context.input, context.communicator);
   const std::shared_ptr<Model> model =
       Registry<Model>::create(context.input.sublist("model"), Model::Context{context.communicator});
+  reduction.require_size(*model->rows(), model->fields().size());
   const ReductionFile::Rows rows = reduction.basis(*model->sources());
   return full_size_parts(model, reduction.windows(), rows.reference, rows.modes, test_basis);
 }

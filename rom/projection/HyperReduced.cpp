@@ -78,6 +78,7 @@ Teuchos::RCP<const Communicator> HyperReduced::Opened::sharing(std::size_t sourc
 
 std::shared_ptr<Model> HyperReduced::Opened::checked(std::shared_ptr<Model> model, std::size_t window,
                                                      const SampleMesh& mesh) const {
+  file.require_components(model->fields().size());
   if (model->rows()->getGlobalNumElements() == mesh.rows.size()) return model;
   throw FileError(name(), fmt::format("windows/{}", window),
                   fmt::format("its sampled model has {} rows", model->rows()->getGlobalNumElements()),

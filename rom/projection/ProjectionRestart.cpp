@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "framework/files/Hdf5.hpp"
 #include "rom/projection/Projection.hpp"
@@ -15,13 +16,13 @@ void Projection::save(hdf5::Group& group) const {
 }
 
 void Projection::restore(const hdf5::Group& group, std::size_t x_size) {
-  const int age = static_cast<int>(group.integer("age"));
+  const int age = static_cast<int>(group.integer("age", -1, std::numeric_limits<int>::max()));
   forget_jacobian();
   if (age < 0) return;
-  const hdf5::Array<double> x = group.reals("frozen coordinates", {x_size});
+  const hdf5::Array<double> x = group.finite_reals("frozen coordinates", {x_size});
   VectorView frozen("kiln::rom::restored coordinates", x.values.size());
   std::copy(x.values.begin(), x.values.end(), frozen.data());
-  linearise(group.real("alpha"), group.real("gamma"), frozen, group.real("time"));
+  linearise(group.finite_real("alpha"), group.finite_real("gamma"), frozen, group.finite_real("time"));
   frozen_.age = age;
 }
 

@@ -39,7 +39,7 @@ class Ptrom : public HyperReduced {
       const hdf5::Group group = opened.file.clusters(window);
       const TimeWindow& time = opened.file.windows()[window];
       const int columns = time.first + time.size;
-      const ParticleTable clusters = ParticleTable::read(group, opened.file.components(), columns);
+      const ParticleTable clusters = opened.file.cluster_table(window);
       const std::size_t sources = mesh.rows.size() + clusters.ids.size();
       const std::shared_ptr<Model> model = opened.checked(
           full == nullptr ? Registry<Model>::restore(block, {opened.sharing(sources)}, group.group("model"))

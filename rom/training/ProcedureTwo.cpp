@@ -13,6 +13,7 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Seal.hpp"
 #include "framework/model/Halo.hpp"
 #include "framework/registry/Registry.hpp"
 #include "rom/clustering/SourceClustering.hpp"
@@ -306,6 +307,7 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
     if (trials.ptrom) written.attribute("trial_clustered", facts["trial_clustered"].dump());
     written.flush();
   }
+  hdf5::seal(path.temporary(), *communicator_);
   path.commit();
 }
 

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Teuchos_CommHelpers.hpp>
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <thread>
 
 #include "framework/base/Error.hpp"
+#include "framework/driver/StopRequest.hpp"
 #include "unit_tests/framework/method/FullOrderCases.hpp"
 
 namespace kiln {
@@ -97,6 +102,55 @@ TEST(TimeLoop, CheckpointsAreDueAsAsked) {
   // A pause no run of seven steps lasts, and one that every step does.
   EXPECT_TRUE(due({0.1, 0, 7, 3, 1e6}).empty());
   EXPECT_EQ(due({0.1, 0, 7, 3, 1e-12}), (std::vector<int>{3, 6, 7}));
+}
+
+/// A run that hears of SIGTERM on one of its ranks ends on all of them after the same step, with a checkpoint.
+TEST(TimeLoop, ASignalEndsItBetweenSteps) {
+  class Raises : public Observer {
+   public:
+    explicit Raises(int step) : step_(step) {}
+    void begin() override {}
+    void observe(const Moment& moment) override {
+      last = moment.step;
+      checkpoint = moment.checkpoint;
+      const bool mine = world()->getRank() == world()->getSize() - 1;
+      if (moment.step == step_ && mine) std::raise(SIGTERM);
+      // Ranks agree four times a second, or each step if that takes longer.
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    void finish(RunReport&) override {}
+    int last = 0;
+    bool checkpoint = false;
+
+   private:
+    int step_;
+  };
+  const auto method = chain(100);
+  const auto time_scheme = scheme("backward euler", *method, 0.1);
+  const VectorView x = initial(*method);
+  for (const int every : {0, 1000}) {
+    Raises observer(3);
+    time_scheme->start(x, 0.0);
+    try {
+      run_time_loop(*method, *time_scheme, x, {0.1, 0, 500, every}, {&observer});
+      FAIL() << "not stopped";
+    } catch (const Stopped& stopped) {
+      EXPECT_GE(observer.last, 4);
+      EXPECT_LT(observer.last, 60) << "the ranks agree within about a quarter of a second";
+      EXPECT_EQ(observer.checkpoint, every > 0);
+      const std::string told = stopped.what();
+      EXPECT_NE(told.find("came: stopped after step " + std::to_string(observer.last) + " of 500"), std::string::npos)
+          << told;
+    }
+    int lowest = observer.last, highest = observer.last;
+    Teuchos::reduceAll(*world(), Teuchos::REDUCE_MIN, 1, &observer.last, &lowest);
+    Teuchos::reduceAll(*world(), Teuchos::REDUCE_MAX, 1, &observer.last, &highest);
+    EXPECT_EQ(lowest, highest);
+  }
+  // A signal in the last step changes nothing.
+  Raises last(4);
+  time_scheme->start(x, 0.0);
+  EXPECT_EQ(run_time_loop(*method, *time_scheme, x, {0.1, 0, 4}, {&last}).steps, 4);
 }
 
 TEST(TimeLoop, CappedStepsAreCounted) {

@@ -40,7 +40,25 @@ TEST(RunFolder, RefusesASecondRunWhileTheFirstLives) {
   }
   EXPECT_EQ(error_of(folder / "run"), "no FileError");
   world()->barrier();
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "run"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run")) << "a folder in which nothing was written";
+}
+
+TEST(RunFolder, TakesTheFoldersItMadeWithItUnlessSomethingWasWritten) {
+  TestFolder folder;
+  const auto is_there = [&](const char* name) {
+    world()->barrier();
+    return std::filesystem::exists(folder / name);
+  };
+  { const RunFolder run(folder / "a/b/c", *world()); }
+  EXPECT_FALSE(is_there("a"));
+  {
+    const RunFolder run(folder / "a/b/c", *world());
+    if (world()->getRank() == 0) std::ofstream(folder / "a/kept") << "text";
+  }
+  EXPECT_FALSE(is_there("a/b"));
+  EXPECT_TRUE(is_there("a/kept"));
+  { const RunFolder run(folder / "a", *world()); }
+  EXPECT_TRUE(is_there("a/kept"));
 }
 
 TEST(RunFolder, AKilledRunsLockDoesNotBind) {

@@ -32,6 +32,15 @@ TEST_F(OverrideTest, MendsTheFile) {
   EXPECT_EQ(mistakes_of(model + "time: {step: -1}\n", {"time.step=1 ms"}), Lines{});
 }
 
+TEST_F(OverrideTest, APathIsNoDeeperThanAFile) {
+  std::string path = "a";
+  for (int i = 0; i < 64; ++i) path += ".a";
+  const Lines told = mistakes_of(model, {path + "=1"});
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told.front().substr(0, 10), "--set a.a.");
+  EXPECT_NE(told.front().find(": a path of 65 keys; expected at most 64"), std::string::npos) << told.front();
+}
+
 TEST_F(OverrideTest, FilesLieBesideTheInput) {
   write("sub/steel.csv", "1");
   write("sub/run.yaml", model);

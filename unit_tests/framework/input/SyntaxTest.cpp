@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include "unit_tests/framework/input/InputTest.hpp"
 
 namespace kiln::test {
@@ -10,7 +12,7 @@ class SyntaxTest : public InputTest {
     std::string expected;
   };
   void expect(const std::vector<Case>& cases) const {
-    for (const Case& one : cases) EXPECT_EQ(mistakes_of(one.text), Lines{one.expected}) << one.text;
+    for (const Case& one : cases) EXPECT_EQ(mistakes_of(one.text), Lines{one.expected}) << one.text.substr(0, 400);
   }
 };
 
@@ -67,8 +69,34 @@ TEST_F(SyntaxTest, WhatIsNoFileIsTold) {
   write("folder/x", "");
   EXPECT_EQ(mistakes({}, "absent.yaml"), Lines{"absent.yaml: there is no such file"});
   EXPECT_EQ(mistakes({}, "folder"), Lines{"folder: this is a folder"});
+  if (communicator_->getRank() == 0) ASSERT_EQ(mkfifo((folder_ + "/pipe").c_str(), 0600), 0);
+  EXPECT_EQ(mistakes({}, "pipe"), Lines{"pipe: this is a pipe"});
+  EXPECT_EQ(mistakes_of(model + "  table: /dev/zero\n"),
+            Lines{"run.yaml:4:10: model.table: this is a device: /dev/zero; expected an existing file"});
   write("run.yaml", "title: " + std::string(17 << 20, 'x') + "\n");
   EXPECT_EQ(mistakes(), Lines{"run.yaml: the file is longer than 16 MiB"});
+}
+
+TEST_F(SyntaxTest, WhatWouldTakeForEverIsRefused) {
+  std::string keys, values = "tags: [";
+  for (int i = 0; i < 6000; ++i) keys += "key" + std::to_string(i) + ": 1\n";
+  for (int i = 0; i < 300000; ++i) values += "a,";
+  expect({{keys, "run.yaml:5002:1: more than 5000 keys in one block"},
+          {values + "a]\n", "run.yaml:1:400002: more than 200000 values"}});
+}
+
+TEST_F(SyntaxTest, VeryManyMistakesAreCounted) {
+  std::string keys;
+  for (int i = 0; i < 60; ++i) keys += "key" + std::to_string(i) + ": 1\n";
+  const Lines told = mistakes_of(model + keys);
+  ASSERT_EQ(told.size(), 51u);
+  EXPECT_EQ(told.front().substr(0, 30), "run.yaml:4:1: key0: unknown ke");
+  EXPECT_EQ(told.back(), "run.yaml: 10 more mistakes");
+}
+
+TEST_F(SyntaxTest, ATextCannotHoldNul) {
+  expect(
+      {{"title: \"a\\0b\"\n", "run.yaml:1:8: the text 'a\\x00b' holds the character NUL; expected a text without it"}});
 }
 
 TEST_F(SyntaxTest, HarmlessTextIsRead) {

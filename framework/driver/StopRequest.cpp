@@ -1,0 +1,61 @@
+#include "framework/driver/StopRequest.hpp"
+
+#include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
+#include <csignal>
+
+namespace kiln {
+namespace {
+
+volatile std::sig_atomic_t signal_that_came = 0;
+
+extern "C" void note_signal(int number) { signal_that_came = number; }
+
+struct Handler {
+  int signal;
+  struct sigaction before;
+};
+
+Handler handlers[] = {{SIGTERM, {}}, {SIGINT, {}}};
+
+constexpr double seconds_between_agreements = 0.25;
+
+}  // namespace
+
+StopRequest::StopRequest(const Communicator& communicator, int first_step)
+    : communicator_(communicator), asked_step_(first_step), asked_(Clock::now()) {
+  signal_that_came = 0;
+  struct sigaction action {};
+  action.sa_handler = note_signal;
+  sigemptyset(&action.sa_mask);
+  // Once: the second signal does what it does to any program. Interrupted system calls go on.
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  for (Handler& handler : handlers) sigaction(handler.signal, &action, &handler.before);
+}
+
+StopRequest::~StopRequest() {
+  for (const Handler& handler : handlers) sigaction(handler.signal, &handler.before, nullptr);
+}
+
+bool StopRequest::came(int step) {
+  if (communicator_.getSize() == 1) return signal_that_came != 0;
+  if (step < next_) return false;
+  const std::chrono::duration<double> passed = Clock::now() - asked_;
+  const double a_step = passed.count() / std::max(1, step - asked_step_);
+  const double steps = std::min(seconds_between_agreements / std::max(a_step, 1e-9), 1e4);
+  // The least of all ranks: 0 for a signal, else the steps until they agree again.
+  const int mine = signal_that_came != 0 ? 0 : std::max(1, static_cast<int>(steps));
+  int least = mine;
+  Teuchos::reduceAll(communicator_, Teuchos::REDUCE_MIN, 1, &mine, &least);
+  asked_ = Clock::now();
+  asked_step_ = step;
+  next_ = step + least;
+  return least == 0;
+}
+
+std::string StopRequest::name() {
+  if (signal_that_came == SIGTERM) return "SIGTERM";
+  return signal_that_came == SIGINT ? "SIGINT" : "a signal";
+}
+
+}  // namespace kiln
