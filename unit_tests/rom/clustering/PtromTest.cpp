@@ -96,6 +96,12 @@ class Chains : public testing::TestWithParam<Setting> {
   RunReport report_;
 };
 
+/// Particles of two components.
+ParticleTable read_table(const hdf5::Group& group, int modes) {
+  const std::vector<long long> ids = group.integers("ids", {0}).values;
+  return ParticleTable::read(group, {ids.begin(), ids.end()}, 2, modes);
+}
+
 /// The chain's pairs are linear in their sources: two clusters for four sources give GNAT's answers.
 TEST_P(Chains, AreGnatWhereClusteringIsExact) {
   const Case values = trained();
@@ -207,12 +213,12 @@ TEST(Ptrom, KeepsMeansOfItsMembersInTheFile) {
   train(values, world());
   const hdf5::File file = hdf5::File::read(values.folder + "/reduction.h5", world());
   EXPECT_TRUE(file.has_attribute("trial_clustered"));
-  const ParticleTable particles = ParticleTable::read(file.group("particles"), 2, 24);
+  const ParticleTable particles = read_table(file.group("particles"), 24);
   for (int w = 0; w < 3; ++w) {
     const hdf5::Group group = file.group("windows").group(std::to_string(w)).group("clusters");
     const SourceClusters clusters = read_clusters(group);
     const std::size_t columns = 8 * (w + 1) * 2;
-    const ParticleTable table = ParticleTable::read(group, 2, 8 * (w + 1));
+    const ParticleTable table = read_table(group, 8 * (w + 1));
     ASSERT_EQ(table.ids.size(), clusters.clusters());
     for (std::size_t c = 0; c < clusters.clusters(); ++c) {
       EXPECT_EQ(table.ids[c], values.count + static_cast<GlobalIndex>(c));
