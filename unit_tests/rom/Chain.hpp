@@ -97,8 +97,9 @@ struct Case {
   std::string algorithm = "gram";
   std::string clustering = "";  ///< likewise: left out
   int clusters = 2;             ///< of type "per row"
-  int windows = 0;              ///< 0: the block is left out
-  double window_error = 0.0;    ///< likewise
+  std::string cluster_weights = "fitted";
+  int windows = 0;            ///< 0: the block is left out
+  double window_error = 0.0;  ///< likewise
   std::string folder = ".";
 };
 
