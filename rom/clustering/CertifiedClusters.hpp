@@ -18,6 +18,7 @@ class CertifiedClusters : public SourceClustering {
   CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
+  bool weights_are_fitted() const override { return false; }
 
  private:
   std::string path_;

@@ -32,6 +32,8 @@ class SourceClustering {
   /// Clusters for pairs.rows; those of a row ascend. Does not depend on the order of round-off by which the arguments
   /// of different numbers of ranks differ. Throws InputError for pairs it does not serve.
   virtual SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const = 0;
+  /// Whether training is to fit row_weights to the rates that it has met (fit_weights()).
+  virtual bool weights_are_fitted() const = 0;
 };
 
 }  // namespace kiln

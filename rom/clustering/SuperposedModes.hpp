@@ -21,6 +21,7 @@ class SuperposedModes : public SourceClustering {
   SuperposedModes(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
+  bool weights_are_fitted() const override { return false; }
 
  private:
   std::string path_;

@@ -8,6 +8,7 @@
 #include "framework/base/Error.hpp"
 #include "rom/clustering/SourceClustering.hpp"
 #include "rom/linear_algebra/Dense.hpp"
+#include "rom/training/FitWeights.hpp"
 
 namespace kiln {
 namespace {
@@ -102,9 +103,12 @@ ClusteredMesh learn_clusters(const Teuchos::ParameterList& block, const Model& m
   const ParticleTable table = table_of(pairs, model, reference, windows);
   ClusteredMesh mesh;
   mesh.type = block.get<std::string>("type");
-  mesh.clusters =
-      Registry<SourceClustering>::create(block, NoContext{})->clusters(pairs, motion_of(table, window.basis, moments));
+  const auto clustering = Registry<SourceClustering>::create(block, NoContext{});
+  mesh.clusters = clustering->clusters(pairs, motion_of(table, window.basis, moments));
   mesh.table = table_of_clusters(mesh.clusters, table, model.rows()->getMaxAllGlobalIndex() + 1);
+  if (clustering->weights_are_fitted()) {
+    fit_weights(pairwise_model, *window.sample, table, mesh.table, moments, mesh.clusters);
+  }
   mesh.model = pairwise_model.clustered(mesh.clusters);
   mesh.unclustered_pairs = pairs.sources.size();
   return mesh;

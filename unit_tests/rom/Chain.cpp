@@ -300,7 +300,7 @@ Teuchos::ParameterList input_of(const Case& values) {
     clustering.setName("reduction.clustering");
     clustering.set("type", values.clustering);
     if (values.clustering == "per row") {
-      clustering.set("clusters", values.clusters);
+      clustering.set("clusters", values.clusters).set("weights", values.cluster_weights);
     } else {
       clustering.set("opening", 0.5).set("leaf", 1);
     }

@@ -95,11 +95,12 @@ struct Case {
   std::string jacobian = "matrix free";
   int basis_rank = 10, residual_rank = 12, samples = 24;
   std::string algorithm = "gram";
-  std::string clustering = "";           ///< empty: the block is left out
-  int clusters = 2;                      ///< of type "per row"
-  int windows = 0;                       ///< 0: the block is left out
-  double window_error = 0.0;             ///< likewise
-  std::vector<double> train_on, try_on;  ///< powers; empty: the block is left out
+  std::string clustering = "";             ///< empty: the block is left out
+  int clusters = 2;                        ///< of type "per row"
+  std::string cluster_weights = "fitted";  ///< likewise
+  int windows = 0;                         ///< 0: the block is left out
+  double window_error = 0.0;               ///< likewise
+  std::vector<double> train_on, try_on;    ///< powers; empty: the block is left out
   std::string folder = ".";
 };
 

@@ -114,6 +114,25 @@ TEST(HeatPtrom, ErrsLessTheMoreClustersThereAre) {
   EXPECT_EQ(ratios.back(), 1.0);
 }
 
+/// Fitted weights take away what curvature does at all moments alike. At another power, which nothing was fitted to,
+/// they must not do harm.
+TEST(HeatPtrom, ErrsLessWithFittedWeights) {
+  const TestFolder folder;
+  const HeatCase heat;
+  HeatCase hotter;
+  hotter.heat_source = HeatCase::beam(44.0);
+  double errors[2], hotter_errors[2];
+  for (const int fitted : {0, 1}) {
+    Case values = settings(folder.path().string(), 8);
+    values.cluster_weights = fitted == 1 ? "fitted" : "sums";
+    train(values, heat, world());
+    errors[fitted] = difference(run(values, heat, "ptrom", world()), run(values, heat, "gnat", world()));
+    hotter_errors[fitted] = difference(run(values, hotter, "ptrom", world()), run(values, hotter, "gnat", world()));
+  }
+  EXPECT_LT(errors[1], 0.5 * errors[0]);
+  EXPECT_LT(hotter_errors[1], 1.5 * hotter_errors[0]);
+}
+
 TEST(HeatPtrom, HasTheSameClustersOnAnyNumberOfRanks) {
   const TestFolder folder;
   const HeatCase heat;

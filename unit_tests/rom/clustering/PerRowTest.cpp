@@ -39,7 +39,7 @@ struct Problem {
 
 PerRow per_row(int clusters) {
   Teuchos::ParameterList list("reduction.clustering");
-  return PerRow(list.set("clusters", clusters), NoContext{});
+  return PerRow(list.set("clusters", clusters).set("weights", std::string("sums")), NoContext{});
 }
 
 class PerRowSums : public testing::TestWithParam<int> {};
