@@ -69,7 +69,9 @@ TEST_F(SyntaxTest, WhatIsNoFileIsTold) {
   write("folder/x", "");
   EXPECT_EQ(mistakes({}, "absent.yaml"), Lines{"absent.yaml: there is no such file"});
   EXPECT_EQ(mistakes({}, "folder"), Lines{"folder: this is a folder"});
-  if (communicator_->getRank() == 0) ASSERT_EQ(mkfifo((folder_ + "/pipe").c_str(), 0600), 0);
+  if (communicator_->getRank() == 0) {
+    ASSERT_EQ(mkfifo((folder_ + "/pipe").c_str(), 0600), 0);
+  }
   EXPECT_EQ(mistakes({}, "pipe"), Lines{"pipe: this is a pipe"});
   EXPECT_EQ(mistakes_of(model + "  table: /dev/zero\n"),
             Lines{"run.yaml:4:10: model.table: this is a device: /dev/zero; expected an existing file"});

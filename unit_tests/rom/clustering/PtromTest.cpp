@@ -43,21 +43,6 @@ Case clustered_case(const std::string& folder) {
   return values;
 }
 
-RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator) {
-  const Teuchos::ParameterList input = test::input_of(values);
-  RunReport report;
-  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, communicator, true})
-      ->train(values.folder + "/reduction.h5", report);
-  return report;
-}
-
-std::unique_ptr<Method> method_of(Case values, const std::string& type,
-                                  const Teuchos::RCP<const Communicator>& communicator) {
-  values.method = type;
-  const Teuchos::ParameterList input = test::input_of(values);
-  return Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
-}
-
 std::vector<double> run(const Case& values, const std::string& type,
                         const Teuchos::RCP<const Communicator>& communicator) {
   return march(*method_of(values, type, communicator), values);
