@@ -9,6 +9,7 @@
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/Together.hpp"
+#include "framework/input/Override.hpp"
 #include "framework/report/Hash.hpp"
 #include "framework/report/Provenance.hpp"
 
@@ -73,7 +74,7 @@ std::vector<Problem> StudyInputs::placed(const InputError& error, const StudyCas
   for (Problem& problem : problems) {
     if (problem.path == item.input) problem.path = fmt::format("{}: {}", place(item.place + ".input"), item.input);
     for (const StudyCase::Override& override : item.overrides) {
-      const std::string start = "--set " + override.text;
+      const std::string start = override_place(override.text);
       if (problem.path.compare(0, start.size(), start) != 0) continue;
       const std::string rest = problem.path.substr(start.size());
       // Another override's text may begin with this one's.

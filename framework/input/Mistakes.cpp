@@ -69,7 +69,7 @@ std::string escaped(const std::string& text, std::size_t longest) {
 }  // namespace
 
 std::string printable(const std::string& text) { return escaped(text, text.size()); }
-std::string shown(const std::string& text) { return escaped(text, 60); }
+std::string shown(const std::string& text, std::size_t longest) { return escaped(text, longest); }
 
 std::string in_quotes(const std::string& text) { return "'" + shown(text) + "'"; }
 

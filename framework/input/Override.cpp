@@ -31,8 +31,13 @@ bool is_index(const std::string& key) {
 
 }  // namespace
 
+std::string override_place(const std::string& override_text) {
+  constexpr std::size_t longest = 300;
+  return "--set " + shown(override_text, longest);
+}
+
 void apply_override(const std::string& override_text, YamlNode& root, Mistakes& mistakes) {
-  const Location place{fmt::format("--set {}", shown(override_text)), 0, 0};
+  const Location place{override_place(override_text), 0, 0};
   const std::size_t equals = override_text.find('=');
   if (equals == std::string::npos) {
     mistakes.add(place, {{}, "no '='", "path.to.key=value", {}});
