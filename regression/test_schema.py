@@ -149,7 +149,7 @@ class SchemaTest(KilnTest):
         refused("fom", "method", "type", value="fomm")
         refused("None", "time", "end", value=None)
         # Something that is missing.
-        refused("power", "model", "heat_source", "power", remove=True)
+        refused("heat_source", "model", "heat_source", "power", remove=True)
         refused("time", "time", remove=True)
         refused("type", "model", "type", remove=True)
 
