@@ -50,9 +50,9 @@ HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings
 /// domain does not have or that is listed twice. Collective.
 HeatDomain sampled_domain(const HeatDomain& domain, const std::vector<GlobalIndex>& rows);
 
-/// As sampled_domain for the rows of the clusters, whose sources are the rows and, with the ids that PairwiseModel gives
-/// them, the clusters: each has the mean mass and position of its members, and its pair the weight that makes weight ·
-/// mass the cluster's. Throws InputError for a member that the domain does not have. Collective.
+/// As sampled_domain for the rows of the clusters, whose sources are the rows and, with the ids that PairwiseModel
+/// gives them, the clusters: each has the mean mass and position of its members, and its pair the weight that makes
+/// weight · mass the cluster's. Throws InputError for a member that the domain does not have. Collective.
 HeatDomain clustered_domain(const HeatDomain& domain, const SourceClusters& clusters);
 
 /// Writes a domain in an order that does not depend on the number of ranks. Collective.
