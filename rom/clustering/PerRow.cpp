@@ -45,7 +45,7 @@ Specification PerRow::specification() {
   Specification s;
   s.integer("clusters", "most clusters of a row's sources; multiples of 8 fill the lanes of vectors")
       .at_least(1)
-      .defaults_to(12);
+      .defaults_to(8);
   s.choice("weights",
            "of clusters. sums: of their members' weights; fitted: near these, such that the rates of the training come "
            "out right in the mean",

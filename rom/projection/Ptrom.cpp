@@ -27,7 +27,7 @@ class Ptrom : public HyperReduced {
     Opened opened(context);
     if (!opened.file.clustered()) {
       throw InputError(path + ".type", fmt::format("'ptrom' needs clusters of sources, and {} has none", opened.name()),
-                       "a file trained with reduction.clustering, such as {type: per row, clusters: 12}; or 'gnat'");
+                       "a file trained with reduction.clustering, such as {type: per row, clusters: 8}; or 'gnat'");
     }
     opened.held = opened.file.target_particles();
     const Teuchos::ParameterList& block = context.input.sublist("model");

@@ -227,7 +227,7 @@ TEST(Ptrom, NeedsClusters) {
   EXPECT_EQ(message([&] { method_of(values, "ptrom", world()); }),
             "method.type: 'ptrom' needs clusters of sources, and " + values.folder +
                 "/reduction.h5 has none; expected a file trained with reduction.clustering, such as {type: per row, "
-                "clusters: 12}; or 'gnat'");
+                "clusters: 8}; or 'gnat'");
 }
 
 TEST(Ptrom, NamesDamagedClusters) {
