@@ -8,11 +8,6 @@ from harness import HERE, KilnTest, main
 
 # Choices whose answers are compared with something better than gold values.
 ELSEWHERE = {("input", "grid"): "unit_tests/framework/queries: points of a run with many; test_queries.py: single runs"}
-# Components that no built-in model can run with: their weights must not depend on the row, and those of SPH do.
-WITHOUT_A_MODEL = {
-    ("source clustering", "paper"): "unit_tests/rom/clustering/SharedClustersTest.cpp",
-    ("source clustering", "robust"): "the same",
-}
 COMMENT = re.compile(r"\A# \S.*\n")
 
 
@@ -44,7 +39,7 @@ class CasesTest(KilnTest):
         without = [
             f"{category} '{name}'"
             for category, name in components
-            if not self.uses("type", name) and (category, name) not in WITHOUT_A_MODEL
+            if not self.uses("type", name)
         ]
         self.assertEqual(without, [], "no file of regression/cases uses these; ./dev gold writes a case's gold values")
 
