@@ -94,10 +94,11 @@ class SchemaTest(KilnTest):
             if path.stem in FRAGMENTS:
                 continue
             # What a reduced method reads is not there before training; which method it is changes nothing else.
-            full_order = ("--set", "method={type: fom}", "--set", "model.particles={type: lattice, origin: [0, 0, 0], "
-                          "size: [1 mm, 0.5 mm, 0.5 mm], count: [11, 6, 6], placement: cells}", "--set", "output.probes.tolerance=1 m",
-                          "--set", "plugins=[]")  # fmt: skip
-            outcome = self.kiln("check", path, *full_order)
+            changes = ["method={type: fom}", "output.probes.tolerance=1 m", "plugins=[]"]
+            if "vortex" not in str(path.relative_to(HERE.parent)):
+                changes.append("model.particles={type: lattice, origin: [0, 0, 0], size: [1 mm, 0.5 mm, 0.5 mm], "
+                               "count: [11, 6, 6], placement: cells}")
+            outcome = self.kiln("check", path, *(word for change in changes for word in ("--set", change)))
             self.assertEqual((outcome.status, outcome.stderr), (0, ""), path)
             self.assertEqual(self.problems(loaded(outcome.stdout)), [], path)
             taken += 1

@@ -21,7 +21,7 @@ class VortexInputsTest(KilnTest):
 
     def test_all_pass_check(self):
         names = sorted(path.stem for path in INPUTS.glob("*.yaml"))
-        self.assertEqual(names, ["pair", "two-patches"])
+        self.assertEqual(names, ["pair", "projection-tree", "two-patches"])
         for name in names:
             checked = self.kiln("check", INPUTS / f"{name}.yaml")
             self.assertEqual((checked.status, checked.stderr), (0, ""))

@@ -351,7 +351,7 @@ void train(const Input& input, const CommandOptions& options, const Comm& commun
 void build(const Input& input, bool trains, const Comm& communicator) {
   const TemporaryFolder folder(*communicator);
   located(input, [&] {
-    if (trains) make_trainer(input, true, communicator);
+    if (trains || input.list().isSublist("reduction")) make_trainer(input, true, communicator)->check();
     if (input.list().isSublist("queries")) {
       QueryRun(input.list(), communicator);
     } else {

@@ -100,6 +100,7 @@ Specification Greedy::specification() {
   s.real("samples_per_mode",
          "particles a residual mode; 1: interpolation, as the report has it, which amplifies errors")
       .at_least(1)
+      .at_most(1000)
       .defaults_to(2.0);
   s.integers("seeds", "ids of particles that are chosen in any case").optional();
   return s;

@@ -4,6 +4,7 @@
 
 #include <Tpetra_Map.hpp>
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "framework/method/FullOrder.hpp"
@@ -19,6 +20,8 @@ namespace {
 
 /// Moments at which a trial run's whole field is compared with the full-order one.
 constexpr int trial_moments = 20;
+
+constexpr std::array<const char*, 2> keys = {"train_on", "try_on"};
 
 /// The input's own values with those of one of `points` in their place.
 std::vector<double> values_with(const ParameterPoints& own, const ParameterPoints& points, std::size_t point) {
@@ -45,12 +48,22 @@ void FullOrderRuns::specify(Specification& reduction) {
       .optional();
 }
 
+void FullOrderRuns::check(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
+                          const Teuchos::RCP<const Communicator>& communicator) {
+  std::unique_ptr<Model> model;
+  for (const char* key : keys) {
+    if (!block.isSublist(key)) continue;
+    if (model == nullptr) model = Registry<Model>::create(input.sublist("model"), {communicator});
+    points_of(block.sublist(key), model->parameters());
+  }
+}
+
 void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
   for (const Parameter& parameter : model_->parameters().list()) own_.names.push_back(parameter.name);
   own_.values.emplace_back();
   for (const Parameter& parameter : model_->parameters().list()) own_.values.front().push_back(*parameter.value);
   points_.names = own_.names;
-  for (const char* key : {"train_on", "try_on"}) {
+  for (const char* key : keys) {
     if (block.isSublist(key)) {
       const ParameterPoints listed = points_of(block.sublist(key), model_->parameters());
       for (std::size_t point = 0; point < listed.count(); ++point) {
@@ -62,7 +75,7 @@ void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
     } else if (points_.count() == 0) {
       points_.values.push_back(own_.values.front());
     }
-    if (key == std::string("train_on")) learnt_ = points_.count();
+    if (key == keys[0]) learnt_ = points_.count();
   }
 }
 

@@ -28,6 +28,10 @@ class FullOrderRuns {
   /// Adds the keys `train_on` and `try_on` to the block `reduction`.
   static void specify(Specification& reduction);
 
+  /// Throws InputError for points that are none of the model's; builds the model if there are points. Collective.
+  static void check(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
+                    const Teuchos::RCP<const Communicator>& communicator);
+
   /// Runs them all. Throws InputError for points that are none of the model's. Collective.
   FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block, const Settings& settings,
                 const Teuchos::RCP<const Communicator>& communicator);

@@ -34,6 +34,7 @@ class ProcedureTwo : public Trainer {
   static Specification specification();
   ProcedureTwo(const Teuchos::ParameterList& block, const Context& context);
 
+  void check() const override { FullOrderRuns::check(input_, block_, communicator_); }
   void train(const std::filesystem::path& file, RunReport& report) override;
 
  private:
