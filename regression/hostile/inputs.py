@@ -149,7 +149,7 @@ def leaf_cases(file, arguments, text):
         name = key.value
         misspelt = name[:-1] + name[-1] + "e" if len(name) < 3 else name[0] + name[2] + name[1] + name[3:] + "q"
         span = (key.start_mark.index, key.end_mark.index)
-        line = rf"{here}:\d+:\d+: " if name == "type" else rf"{here}:{key.start_mark.line + 1}:\d+: .*unknown key"
+        line = rf"{here}:\d+:\d+: " if name == "type" else rf"{here}:{key.start_mark.line + 1}:\d+: .*(unknown key|no live parameter)"
         yield case(f"{'.'.join(path)}: misspelt key", replaced(text, span, misspelt), line)
         lines = text.splitlines(keepends=True)
         first, last = key.start_mark.line, max(key.start_mark.line + 1, value.end_mark.line)
