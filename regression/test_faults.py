@@ -232,15 +232,37 @@ class StopTest(FaultTest):
         process.send_signal(signal.SIGTERM)
         self.refused(process, "SIGTERM came", "no block output.checkpoint", status=4)
 
-    def test_training_leaves_nothing(self):
-        words = command("train", SMALL, *overrides(*CASE), "--quiet")
-        process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", start_new_session=True)
-        while not (self.folder / "results" / "training" / "run.lock").exists():
+    def stopped_once_locked(self, lock, *words):
+        process = subprocess.Popen(
+            command(*words, "--quiet"), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", start_new_session=True,
+        )  # fmt: skip
+        while not lock.exists():
+            self.assertIsNone(process.poll(), "it ended too early")
             time.sleep(0.001)
-        time.sleep(0.2)
         process.send_signal(signal.SIGTERM)
         self.refused(process, "SIGTERM came", status=4)
+
+    def test_training_leaves_nothing(self):
+        self.stopped_once_locked(self.folder / "results" / "training" / "run.lock", "train", SMALL, *overrides(*CASE))
         self.assertFalse((self.folder / "results").exists())
+
+    def test_a_run_that_has_not_begun(self):
+        self.stopped_once_locked(self.folder / "results" / "fom" / "run.lock", "run", SMALL, *overrides(*CASE))
+        self.assertEqual(self.saved_step(self.folder / "results" / "fom"), 1)
+
+    def test_queries_leave_nothing(self):
+        powers = ", ".join(f"{40 + k} W" for k in range(200))
+        (self.folder / "queries.yaml").write_text(
+            f"include: {SMALL}\nqueries:\n  points:\n    heat_source.power: [{powers}]\n  together: 8\n"
+        )
+        self.solve("train", *CASE)
+        for method in ("fom", "gnat"):
+            folder = self.folder / "results" / method
+            with self.subTest(method=method):
+                self.stopped_once_locked(
+                    folder / "run.lock", "run", "queries.yaml", *overrides(*CASE, f"method.type={method}")
+                )
+                self.assertFalse(folder.exists())
 
     def test_a_study_goes_on_later(self):
         (self.folder / "study.yaml").write_text(

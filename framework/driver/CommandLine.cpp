@@ -16,6 +16,7 @@
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
+#include "framework/driver/StopRequest.hpp"
 #include "framework/driver/Study.hpp"
 #include "framework/driver/StudySpecification.hpp"
 #include "framework/files/AtomicFile.hpp"
@@ -148,6 +149,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   run_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
   run_app->callback([&] {
     command = [&]() -> int {
+      const SignalWatch watch;
       run(options, communicator);
       return exit_success;
     };
@@ -158,6 +160,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   train_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
   train_app->callback([&] {
     command = [&]() -> int {
+      const SignalWatch watch;
       train(options, communicator);
       return exit_success;
     };
@@ -179,9 +182,12 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   study_app->add_flag("--quiet", study_options.quiet, "no progress; failures are told nonetheless");
   study_app->callback([&] {
     command = [&]() -> int {
-      if (!list_only) return study(study_options, communicator);
-      print(*communicator, list_study(study_options, communicator));
-      return exit_success;
+      if (list_only) {
+        print(*communicator, list_study(study_options, communicator));
+        return exit_success;
+      }
+      const SignalWatch watch;
+      return study(study_options, communicator);
     };
   });
 

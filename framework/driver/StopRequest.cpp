@@ -11,31 +11,28 @@ volatile std::sig_atomic_t signal_that_came = 0;
 
 extern "C" void note_signal(int number) { signal_that_came = number; }
 
-struct Handler {
-  int signal;
-  struct sigaction before;
-};
-
-Handler handlers[] = {{SIGTERM, {}}, {SIGINT, {}}};
-
 constexpr double seconds_between_agreements = 0.25;
 
 }  // namespace
 
-StopRequest::StopRequest(const Communicator& communicator, int first_step)
-    : communicator_(communicator), asked_step_(first_step), asked_(Clock::now()) {
+SignalWatch::SignalWatch() {
   signal_that_came = 0;
   struct sigaction action {};
   action.sa_handler = note_signal;
   sigemptyset(&action.sa_mask);
   // Once: the second signal does what it does to any program. Interrupted system calls go on.
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-  for (Handler& handler : handlers) sigaction(handler.signal, &action, &handler.before);
+  sigaction(SIGTERM, &action, &terminate_before_);
+  sigaction(SIGINT, &action, &interrupt_before_);
 }
 
-StopRequest::~StopRequest() {
-  for (const Handler& handler : handlers) sigaction(handler.signal, &handler.before, nullptr);
+SignalWatch::~SignalWatch() {
+  sigaction(SIGTERM, &terminate_before_, nullptr);
+  sigaction(SIGINT, &interrupt_before_, nullptr);
 }
+
+StopRequest::StopRequest(const Communicator& communicator, int first_step)
+    : communicator_(communicator), asked_step_(first_step), asked_(Clock::now()) {}
 
 bool StopRequest::came(int step) {
   if (communicator_.getSize() == 1) return signal_that_came != 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <stdexcept>
 #include <string>
 
@@ -14,17 +15,27 @@ class Stopped : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Notices SIGTERM (what batch systems send before they kill) and SIGINT (Ctrl-C) while it lives, so that a time loop
-/// can end in order; a second signal ends the program at once. Ranks may hear of a signal in different steps: they
-/// agree on one, as often as costs next to nothing and no signal waits longer than about a quarter of a second or a
-/// step.
+/// While it lives, SIGTERM (what batch systems send before they kill) and SIGINT (Ctrl-C) no longer end the program:
+/// they are noted, for the loops to end in order; a second signal of the kind ends the program at once. One at a time,
+/// from before the first file is made until the last is closed.
+class SignalWatch {
+ public:
+  SignalWatch();
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+  ~SignalWatch();
+
+ private:
+  struct sigaction terminate_before_, interrupt_before_;
+};
+
+/// Tells a loop over steps that a signal came (SignalWatch), before the loop or during it. Ranks may hear of a signal
+/// in different steps: they agree on one, as often as costs next to nothing and no signal waits longer than about a
+/// quarter of a second or a step.
 class StopRequest {
  public:
   /// `first_step`: the step before the loop's first.
   StopRequest(const Communicator& communicator, int first_step);
-  StopRequest(const StopRequest&) = delete;
-  StopRequest& operator=(const StopRequest&) = delete;
-  ~StopRequest();
 
   /// Whether the loop is to end after this step; the same on every rank. Called after each step. Collective.
   bool came(int step);

@@ -10,6 +10,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Memory.hpp"
+#include "framework/driver/StopRequest.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/observers/Probes.hpp"
 #include "framework/queries/QueryPoints.hpp"
@@ -131,11 +132,13 @@ void QueryRun::answer_together(std::size_t first, std::size_t count) {
     }
     ++recorded;
   };
+  StopRequest stop(*own_, 0);
   points->start();
   record(0);
   for (int step = 1; step <= span_.last_step; ++step) {
     points->advance(step, step * span_.step);
     record(step);
+    if (stop.came(step)) throw Stopped(StopRequest::name());
   }
   std::copy(points->outcomes().begin(), points->outcomes().end(),
             answers_.outcomes.begin() + static_cast<std::ptrdiff_t>(first));
@@ -169,7 +172,7 @@ const QueryAnswers& QueryRun::answer() {
   const std::size_t count = answers_.outcomes.size();
   answers_.histories.assign(count * answers_.steps.size() * answers_.width(), std::numeric_limits<double>::quiet_NaN());
   answers_.outcomes.assign(count, {});
-  std::string refused;
+  std::string refused, stopped;
   try {
     for (std::size_t first = 0; first < count; first += together_) {
       if (together_ > 1) {
@@ -178,8 +181,13 @@ const QueryAnswers& QueryRun::answer() {
         answer_alone(first);
       }
     }
+  } catch (const Stopped&) {
+    stopped = StopRequest::name();
   } catch (const std::exception& error) {
     refused = error.what();
+  }
+  for (const std::string& name : gathered(stopped, *communicator_)) {
+    if (!name.empty()) throw Stopped(name + " came: stopped before all points were answered; no answer is kept");
   }
   for (const std::string& text : gathered(refused, *communicator_)) {
     if (!text.empty()) throw InputError("queries", text);

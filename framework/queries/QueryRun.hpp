@@ -22,7 +22,7 @@ class QueryRun {
   QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Communicator> communicator);
 
   /// Answers all points. A point that diverges is marked and stops no other. Throws InputError, on every rank, for a
-  /// point that the model refuses. Collective.
+  /// point that the model refuses, and Stopped where a signal asks for the end. Collective.
   const QueryAnswers& answer();
   /// Adds points, divergences and sums over all points. Collective.
   void report(RunReport& report) const;

@@ -129,6 +129,7 @@ TEST(TimeLoop, ASignalEndsItBetweenSteps) {
   const auto time_scheme = scheme("backward euler", *method, 0.1);
   const VectorView x = initial(*method);
   for (const int every : {0, 1000}) {
+    const SignalWatch watch;
     Raises observer(3);
     time_scheme->start(x, 0.0);
     try {
@@ -147,10 +148,13 @@ TEST(TimeLoop, ASignalEndsItBetweenSteps) {
     Teuchos::reduceAll(*world(), Teuchos::REDUCE_MAX, 1, &observer.last, &highest);
     EXPECT_EQ(lowest, highest);
   }
-  // A signal in the last step changes nothing.
+  // A signal in the last step changes nothing for this loop; it ends the next.
+  const SignalWatch watch;
   Raises last(4);
   time_scheme->start(x, 0.0);
   EXPECT_EQ(run_time_loop(*method, *time_scheme, x, {0.1, 0, 4}, {&last}).steps, 4);
+  time_scheme->start(x, 0.0);
+  EXPECT_THROW(run_time_loop(*method, *time_scheme, x, {0.1, 0, 500}, {}), Stopped);
 }
 
 TEST(TimeLoop, CappedStepsAreCounted) {
