@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 
 #include <Teuchos_CommHelpers.hpp>
-#include <Tpetra_Core.hpp>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "bench/BenchCase.hpp"
 #include "bench/Figures.hpp"
 #include "bench/MachineLimits.hpp"
 #include "bench/PlainRate.hpp"
+#include "bench/Program.hpp"
 #include "framework/model/Halo.hpp"
 #include "framework/report/Provenance.hpp"
 
@@ -29,6 +28,12 @@ Teuchos::RCP<const Communicator> alone() {
 
 /// Long before the beam, so that no power is absorbed: the plain loop has no heat source.
 constexpr double no_beam = -1.0;
+
+/// The rate at another state than that of the call before, of which a model would still know the sums.
+void rate_anew(const Model& model, const VectorView& u, const VectorView& f) {
+  u(0) = u(0) == 1000.0 ? 1001.0 : 1000.0;
+  model.rate(u, no_beam, f);
+}
 
 void require_same(const char* what, const HeatModel& model, const PlainRate& plain, const VectorView& f) {
   double largest = 0.0;
@@ -59,10 +64,10 @@ void arrangement(std::vector<Figure>& figures, const std::string& name, const He
   plain.evaluate(u);
   model.rate(u, no_beam, f);
   require_same(name.c_str(), model, plain, f);
-  const auto seconds = interleaved(runs, {[&] { plain.evaluate(u); }, [&] { model.rate(u, no_beam, f); },
+  const auto seconds = interleaved(runs, {[&] { plain.evaluate(u); }, [&] { rate_anew(model, u, f); },
                                           [&] { model.rate_jacobian_diagonal(u, no_beam, f); }});
   // Apart from the comparison above: the triad leaves the caches cold.
-  std::vector<std::function<void()>> works = {[&] { model.rate(u, no_beam, f); }};
+  std::vector<std::function<void()>> works = {[&] { rate_anew(model, u, f); }};
   for (const Need& need : needs) works.push_back(need.limit.work);
   const auto beside_limits = interleaved(runs, works);
   std::vector<double> limits(runs, 0.0);
@@ -97,9 +102,9 @@ void sample_mesh(std::vector<Figure>& figures, const HeatModel& model, const Ben
   const VectorView sample_u = weld_state(*sample);
   const VectorView sample_f("f", rows.size());
   constexpr int repeats = 100;
-  const auto seconds = interleaved(runs, {[&] { model.rate(u, no_beam, f); },
+  const auto seconds = interleaved(runs, {[&] { rate_anew(model, u, f); },
                                           [&] {
-                                            for (int n = 0; n < repeats; ++n) sample->rate(sample_u, no_beam, sample_f);
+                                            for (int n = 0; n < repeats; ++n) rate_anew(*sample, sample_u, sample_f);
                                           }});
   const double pairs = static_cast<double>(dynamic_cast<const HeatModel&>(*sample).domain().pairs.neighbours.extent(0));
   figures.push_back({"fom.sample_mesh.ns_per_pair", "ns", scaled(seconds[1], 1e9 / (pairs * repeats))});
@@ -164,7 +169,7 @@ std::vector<Figure> all_ranks() {
     double start = wall();
     double cpu = thread_seconds();
     if (everyone->getRank() == 0) {
-      for (int n = 0; n < repeats; ++n) single->rate(single_u, no_beam, single_f);
+      for (int n = 0; n < repeats; ++n) rate_anew(*single, single_u, single_f);
     }
     const double one_cpu = thread_seconds() - cpu;
     everyone->barrier();
@@ -174,7 +179,7 @@ std::vector<Figure> all_ranks() {
     for (int n = 0; n < repeats; ++n) {
       state.fill();
       cpu = thread_seconds();
-      shared->rate(state.sources(), no_beam, shared_f);
+      rate_anew(*shared, state.sources(), shared_f);
       rate_cpu += thread_seconds() - cpu;
     }
     everyone->barrier();
@@ -201,7 +206,7 @@ std::vector<Figure> scale() {
     const auto particles = static_cast<double>(f.extent(0));
     const int repeats = std::max(1, static_cast<int>(280000.0 / particles));
     const auto seconds = interleaved(runs, {[&] {
-                                       for (int n = 0; n < repeats; ++n) model->rate(u, no_beam, f);
+                                       for (int n = 0; n < repeats; ++n) rate_anew(*model, u, f);
                                      }});
     figures.push_back({"scale.fom_ns_per_pair_" + name, "ns", scaled(seconds[0], 1e9 / (pairs * repeats))});
     const double listed = pairs * (sizeof(double) + sizeof(LocalIndex)) + particles * sizeof(std::size_t);
@@ -232,7 +237,7 @@ void count(const std::string& kernel, int repeats, const std::string& folder) {
     } else if (kernel == "rows") {
       rows->sum(PairQuantity::flux, states, f);
     } else {
-      model->rate(u, no_beam, f);
+      rate_anew(*model, u, f);
     }
   }
   fmt::print("pairs {}\n", plain.pairs() * static_cast<std::size_t>(repeats));
@@ -241,38 +246,24 @@ void count(const std::string& kernel, int repeats, const std::string& folder) {
 }  // namespace
 }  // namespace kiln::bench
 
-/// bench_fom one|ranks|scale FOLDER: writes FOLDER/<what>.json; bench_fom count-KERNEL FOLDER REPEATS: evaluates only.
 int main(int argc, char** argv) {
-  Tpetra::ScopeGuard guard(&argc, &argv);
-  const std::string what = argc > 1 ? argv[1] : "";
-  const bool counting = what.rfind("count-", 0) == 0;
-  if (argc != (counting ? 4 : 3)) {
-    fmt::print(stderr, "bench_fom: {} arguments; expected: one|ranks|scale FOLDER or count-KERNEL FOLDER REPEATS\n",
-               argc - 1);
-    return EXIT_FAILURE;
-  }
-  const std::string folder = argv[2];
-  const auto communicator = Tpetra::getDefaultComm();
-  try {
-    std::vector<kiln::bench::Figure> figures;
-    if (counting) {
-      kiln::bench::count(what.substr(6), std::stoi(argv[3]), folder);
-      return EXIT_SUCCESS;
-    }
+  using namespace kiln::bench;
+  const Words usage = {"bench_fom one|ranks|scale FOLDER: writes FOLDER/<what>.json",
+                       "bench_fom count-KERNEL FOLDER REPEATS: evaluates only"};
+  return program(argc, argv, usage, {2, 3}, [](const Words& words, const auto& communicator) {
+    const std::string &what = words[0], &folder = words[1];
+    if (what.rfind("count-", 0) == 0) return count(what.substr(6), std::stoi(words.at(2)), folder);
+    std::vector<Figure> figures;
     if (what == "one") {
-      figures = kiln::bench::one_rank(folder);
+      figures = one_rank(folder);
     } else if (what == "ranks") {
-      figures = kiln::bench::all_ranks();
+      figures = all_ranks();
     } else if (what == "scale") {
-      figures = kiln::bench::scale();
+      figures = scale();
     } else {
       throw std::invalid_argument(fmt::format("bench_fom: '{}'; expected one, ranks or scale", what));
     }
     const nlohmann::json machine = kiln::provenance(*communicator);
-    if (communicator->getRank() == 0) kiln::bench::write(folder + "/" + what + ".json", figures, machine);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+    if (communicator->getRank() == 0) write(folder + "/" + what + ".json", figures, machine);
+  });
 }

@@ -1,10 +1,7 @@
-#include <dlfcn.h>
-#include <fmt/format.h>
-
-#include <Tpetra_Core.hpp>
 #include <cmath>
 
 #include "bench/Figures.hpp"
+#include "bench/Program.hpp"
 #include "framework/report/Provenance.hpp"
 #include "rom/pod/Pod.hpp"
 
@@ -52,23 +49,10 @@ std::vector<Figure> measure(const Communicator& communicator) {
 }  // namespace
 }  // namespace kiln::bench
 
-/// bench_pod pod FOLDER: writes FOLDER/pod.json.
 int main(int argc, char** argv) {
-  // As kiln itself does.
-  const auto set_threads = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-  if (set_threads != nullptr) set_threads(1);
-  Tpetra::ScopeGuard guard(&argc, &argv);
-  if (argc != 3) {
-    fmt::print(stderr, "bench_pod: {} arguments; expected: pod FOLDER\n", argc - 1);
-    return EXIT_FAILURE;
-  }
-  const auto communicator = Tpetra::getDefaultComm();
-  try {
-    const auto figures = kiln::bench::measure(*communicator);
-    kiln::bench::write(fmt::format("{}/{}.json", argv[2], argv[1]), figures, kiln::provenance(*communicator));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+  using namespace kiln::bench;
+  return program(argc, argv, {"bench_pod pod FOLDER: writes FOLDER/pod.json"}, {2},
+                 [](const Words& words, const auto& communicator) {
+                   write(words[1] + "/" + words[0] + ".json", measure(*communicator), kiln::provenance(*communicator));
+                 });
 }

@@ -1,12 +1,11 @@
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <Tpetra_Core.hpp>
 #include <Tpetra_Map.hpp>
 #include <cmath>
 #include <random>
 
 #include "bench/Figures.hpp"
+#include "bench/Program.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/input/Input.hpp"
@@ -144,27 +143,15 @@ std::vector<Figure> measure(Queries& queries, std::size_t a_run, int runs) {
 }  // namespace
 }  // namespace kiln::bench
 
-/// bench_queries queries INPUT REDUCTION QUERIES FOLDER: writes FOLDER/queries.json.
 int main(int argc, char** argv) {
-  // As kiln itself does.
-  const auto set_threads = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-  if (set_threads != nullptr) set_threads(1);
-  Tpetra::ScopeGuard guard(&argc, &argv);
-  if (argc != 6) {
-    fmt::print(stderr, "bench_queries: {} arguments; expected: queries INPUT REDUCTION QUERIES FOLDER\n", argc - 1);
-    return EXIT_FAILURE;
-  }
-  const auto communicator = Tpetra::getDefaultComm();
-  try {
+  using namespace kiln::bench;
+  const Words usage = {"bench_queries queries INPUT METHOD REDUCTION QUERIES FOLDER: writes FOLDER/queries.json"};
+  return program(argc, argv, usage, {6}, [](const Words& words, const auto& communicator) {
     constexpr int runs = 5;
-    const std::vector<std::string> overrides = {"method.type=gnat", fmt::format("method.file={}", argv[3])};
-    const kiln::Input input = kiln::Input::read(argv[2], overrides, kiln::run_specification(), *communicator);
-    kiln::bench::Queries queries(input.list(), communicator);
-    const auto figures = kiln::bench::measure(queries, std::stoul(argv[4]) / runs, runs);
-    kiln::bench::write(fmt::format("{}/{}.json", argv[5], argv[1]), figures, kiln::provenance(*communicator));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return EXIT_FAILURE;
-  }
-  return EXIT_SUCCESS;
+    const std::vector<std::string> overrides = {"method.type=" + words[2], "method.file=" + words[3]};
+    const kiln::Input input = kiln::Input::read(words[1], overrides, kiln::run_specification(), *communicator);
+    Queries queries(input.list(), communicator);
+    write(words[5] + "/" + words[0] + ".json", measure(queries, std::stoul(words[4]) / runs, runs),
+          kiln::provenance(*communicator));
+  });
 }

@@ -84,10 +84,12 @@ def arguments(sections):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sections", nargs="*", metavar="SECTION", help="which ones to run; all but those on request")
     parser.add_argument("--scale", action="store_true", help="the section 'scale' only")
+    parser.add_argument("--ptrom", action="store_true", help="the section 'ptrom' only")
     parser.add_argument("--instructions", action="store_true", help="count instructions too (fom), by valgrind")
     options = parser.parse_args()
-    if options.scale:
-        options.sections.append("scale")
+    for name in ("scale", "ptrom"):
+        if getattr(options, name):
+            options.sections.append(name)
     for name in options.sections:
         if name not in sections:
             parser.error(f"no section '{name}'; expected: {', '.join(sections)}")

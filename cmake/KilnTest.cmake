@@ -5,6 +5,18 @@ set(KILN_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM
     OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
     OPENBLAS_NUM_THREADS=1)
 
+add_library(kiln_test_main OBJECT ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
+target_link_libraries(kiln_test_main PRIVATE kiln_library GTest::gtest)
+kiln_precompile(kiln_test_main)
+
+# kiln_test_cases(name a.cpp …): sources that several tests share, compiled once. A test takes them as a source:
+# $<TARGET_OBJECTS:name>.
+function(kiln_test_cases name)
+  add_library(${name} OBJECT ${ARGN})
+  target_link_libraries(${name} PRIVATE kiln_library GTest::gtest)
+  kiln_precompile(${name} FROM kiln_test_main)
+endfunction()
+
 function(kiln_test)
   cmake_parse_arguments(TEST "" "NAME;TIMEOUT" "SOURCES;RANKS" ${ARGN})
   if(NOT TEST_RANKS)
@@ -13,8 +25,9 @@ function(kiln_test)
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 300)
   endif()
-  add_executable(test_${TEST_NAME} ${TEST_SOURCES} ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
+  add_executable(test_${TEST_NAME} ${TEST_SOURCES} $<TARGET_OBJECTS:kiln_test_main>)
   target_link_libraries(test_${TEST_NAME} PRIVATE kiln_library GTest::gtest)
+  kiln_precompile(test_${TEST_NAME} FROM kiln_test_main)
   foreach(ranks IN LISTS TEST_RANKS)
     if(ranks EQUAL 1)
       add_test(NAME ${TEST_NAME} COMMAND test_${TEST_NAME})

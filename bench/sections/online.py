@@ -1,29 +1,21 @@
-"""The four experiments, full order against GNAT in windows and with one global basis; training in full-order runs."""
+"""The four experiments, full order against GNAT and PTROM, in windows and with one global basis; training in full-order runs."""
 import sys
 
-from kiln_case import KilnCase, figure
+from kiln_case import KilnCase, figure, global_setting
 from summary import compare_runs
 
 RUNS = 5
-# One basis for the whole run: the wake of a beam that crosses the whole part (3 and 4) takes more modes.
-GLOBAL = {1: (60, 90, 150), 2: (60, 90, 150), 3: (90, 150, 250), 4: (90, 180, 300)}
-
-
-def global_setting(experiment):
-    rank, residual_rank, samples = GLOBAL[experiment]
-    return ["reduction.windows.count=1", f"reduction.basis.rank={rank}",
-            f"reduction.residual_basis.rank={residual_rank}", f"reduction.sampling.samples={samples}"]
 
 
 def measure(case, settings):
-    """Figures of the reductions `settings` (name → reduction file), each run after each full-order run."""
+    """Figures of `settings` (name → method and reduction file), each run after each full-order run."""
     wall, cpu = {name: [] for name in settings}, {name: [] for name in settings}
     seconds, comparison = [], {}
     for _ in range(RUNS):
         full = case.full_order()
         seconds.append(full.report["time"]["loop_wall_s"])
-        for name, reduction in settings.items():
-            run, online_wall, online_cpu = case.online(reduction)
+        for name, (method, reduction) in settings.items():
+            run, online_wall, online_cpu = case.online(reduction, method)
             wall[name].append(seconds[-1] / online_wall)
             cpu[name].append(full.report["time"]["loop_cpu_s"] / online_cpu)
             comparison[name] = compare_runs(full, run, reduction)
@@ -43,8 +35,10 @@ def figures(bench):
                         bench.folder / f"online/experiment-{number}")
         windows, training = case.train("windows")
         one_basis, _ = case.train("global", *global_setting(number))
-        own, seconds = measure(case, {f"online.experiment_{number}": windows,
-                                      f"online.global.experiment_{number}": one_basis})
+        own, seconds = measure(case, {f"online.experiment_{number}": ("ptrom", windows),
+                                      f"online.gnat.experiment_{number}": ("gnat", windows),
+                                      f"online.global.experiment_{number}": ("ptrom", one_basis),
+                                      f"online.global.gnat.experiment_{number}": ("gnat", one_basis)})
         result += own
         result.append(figure(f"online.experiment_{number}.full_order_s", seconds, "s"))
         result.append(figure(f"train.experiment_{number}.in_fom_runs", [training / value for value in seconds]))

@@ -295,10 +295,12 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   }
   const Seconds stepping = elapsed(loop, *communicator);
   report_solve(report, totals);
-  if (failure == nullptr) assembly->finish(report);
+  assembly->finish(report);
   const Seconds all = elapsed(total, *communicator);
-  report.section("time") = {{"setup_wall_s", setup.wall}, {"setup_cpu_s", setup.cpu}, {"loop_wall_s", stepping.wall},
-                            {"loop_cpu_s", stepping.cpu}, {"total_wall_s", all.wall}, {"total_cpu_s", all.cpu}};
+  report.section("time") = {{"setup_wall_s", setup.wall},        {"setup_cpu_s", setup.cpu},
+                            {"loop_wall_s", stepping.wall},      {"loop_cpu_s", stepping.cpu},
+                            {"steps_wall_s", totals.stepping_s}, {"observers_wall_s", totals.observing_s},
+                            {"total_wall_s", all.wall},          {"total_cpu_s", all.cpu}};
   report.section("time")["peak_memory_bytes"] = peak_memory(*communicator);
   report.section("timers")["table"] = timers.table(communicator);
   write_report(report, folder.path(), communicator, options.quiet);

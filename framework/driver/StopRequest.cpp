@@ -1,7 +1,6 @@
 #include "framework/driver/StopRequest.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
-#include <algorithm>
 #include <csignal>
 
 namespace kiln {
@@ -10,8 +9,6 @@ namespace {
 volatile std::sig_atomic_t signal_that_came = 0;
 
 extern "C" void note_signal(int number) { signal_that_came = number; }
-
-constexpr double seconds_between_agreements = 0.25;
 
 }  // namespace
 
@@ -29,24 +26,17 @@ SignalWatch::SignalWatch() {
 SignalWatch::~SignalWatch() {
   sigaction(SIGTERM, &terminate_before_, nullptr);
   sigaction(SIGINT, &interrupt_before_, nullptr);
+  signal_that_came = 0;
 }
-
-StopRequest::StopRequest(const Communicator& communicator, int first_step)
-    : communicator_(communicator), asked_step_(first_step), asked_(Clock::now()) {}
 
 bool StopRequest::came(int step) {
   if (communicator_.getSize() == 1) return signal_that_came != 0;
-  if (step < next_) return false;
-  const std::chrono::duration<double> passed = Clock::now() - asked_;
-  const double a_step = passed.count() / std::max(1, step - asked_step_);
-  const double steps = std::min(seconds_between_agreements / std::max(a_step, 1e-9), 1e4);
+  if (!interval_.due(step)) return false;
   // The least of all ranks: 0 for a signal, else the steps until they agree again.
-  const int mine = signal_that_came != 0 ? 0 : std::max(1, static_cast<int>(steps));
+  const int mine = signal_that_came != 0 ? 0 : interval_.steps_to_come(step);
   int least = mine;
   Teuchos::reduceAll(communicator_, Teuchos::REDUCE_MIN, 1, &mine, &least);
-  asked_ = Clock::now();
-  asked_step_ = step;
-  next_ = step + least;
+  interval_.exchanged(step, least);
   return least == 0;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <string>
 
+#include "framework/base/ExchangeInterval.hpp"
 #include "framework/base/LinearAlgebra.hpp"
 
 namespace kiln {
@@ -35,7 +35,7 @@ class SignalWatch {
 class StopRequest {
  public:
   /// `first_step`: the step before the loop's first.
-  StopRequest(const Communicator& communicator, int first_step);
+  StopRequest(const Communicator& communicator, int first_step) : communicator_(communicator), interval_(first_step) {}
 
   /// Whether the loop is to end after this step; the same on every rank. Called after each step. Collective.
   bool came(int step);
@@ -43,12 +43,8 @@ class StopRequest {
   static std::string name();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   const Communicator& communicator_;
-  int next_ = 0;  ///< step after which the ranks agree again
-  int asked_step_;
-  Clock::time_point asked_;
+  ExchangeInterval interval_;
 };
 
 }  // namespace kiln

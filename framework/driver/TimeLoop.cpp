@@ -4,7 +4,6 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_ParameterList.hpp>
-#include <Teuchos_TimeMonitor.hpp>
 #include <Tpetra_Map.hpp>
 #include <chrono>
 #include <cmath>
@@ -16,10 +15,23 @@
 namespace kiln {
 namespace {
 
-void show(const Moment& moment, const std::vector<Observer*>& observers, Teuchos::Time& time) {
-  const Teuchos::TimeMonitor timer(time);
+void show(const Moment& moment, const std::vector<Observer*>& observers) {
   for (Observer* observer : observers) observer->observe(moment);
 }
+
+/// Adds up what lies between its calls. A reduced step takes no longer than some calls of Teuchos::TimeMonitor.
+class Lap {
+ public:
+  void add_to(double& seconds) {
+    const Clock::time_point now = Clock::now();
+    seconds += std::chrono::duration<double>(now - since_).count();
+    since_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point since_ = Clock::now();
+};
 
 /// Tells after which steps a checkpoint is written; the same on every rank.
 class Checkpoints {
@@ -74,26 +86,26 @@ LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const
   const Communicator& communicator = *method.particles()->getComm();
   Checkpoints checkpoints(span, communicator);
   StopRequest stop(communicator, span.first_step);
-  // Looked up once: a reduced step takes about as long as a look-up by name.
-  const Teuchos::RCP<Teuchos::Time> step_time = Teuchos::TimeMonitor::getNewCounter("kiln: time step");
-  const Teuchos::RCP<Teuchos::Time> observer_time = Teuchos::TimeMonitor::getNewCounter("kiln: observers");
-  if (span.first_step == 0) show({0, span.last_step, 0.0, x, {}}, observers, *observer_time);
+  Lap lap;
+  if (span.first_step == 0) show({0, span.last_step, 0.0, x, {}}, observers);
+  lap.add_to(totals.observing_s);
   for (int step = span.first_step + 1; step <= span.last_step; ++step) {
     const double time = step * span.step;
     SolveReport solve;
     try {
-      const Teuchos::TimeMonitor timer(*step_time);
       solve = scheme.advance(x, time);
     } catch (const DivergenceError& error) {
       throw error.at_step(step);
     }
+    lap.add_to(totals.stepping_s);
     ++totals.steps;
     totals.residuals += solve.residuals;
     totals.iterations += solve.iterations;
     totals.capped_steps += solve.converged ? 0 : 1;
     const bool stopped = stop.came(step) && step < span.last_step;
     const bool checkpoint = checkpoints.due(step) || (stopped && span.checkpoint_every > 0);
-    show({step, span.last_step, time, x, solve, checkpoint}, observers, *observer_time);
+    show({step, span.last_step, time, x, solve, checkpoint}, observers);
+    lap.add_to(totals.observing_s);
     if (stopped) {
       throw Stopped(fmt::format("{} came: stopped after step {} of {}, t = {:.6g} s", StopRequest::name(), step,
                                 span.last_step, time));

@@ -20,12 +20,14 @@ struct TimeSpan {
   static TimeSpan of(const Teuchos::ParameterList& input);
 };
 
-/// Sums of a run's solve reports.
+/// Sums of a run's solve reports, and where its time went.
 struct LoopTotals {
   int steps = 0;
   long long residuals = 0;
   long long iterations = 0;
-  int capped_steps = 0;  ///< steps whose iteration cap came before convergence
+  int capped_steps = 0;      ///< steps whose iteration cap came before convergence
+  double stepping_s = 0.0;   ///< wall time of this rank
+  double observing_s = 0.0;  ///< likewise
 };
 
 /// Runs a method through its time span. `scheme` is started or restored already and x is the unknown at first_step;

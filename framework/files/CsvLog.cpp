@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <iterator>
-#include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "framework/files/AtomicFile.hpp"
@@ -16,7 +17,8 @@
 namespace kiln {
 namespace {
 
-constexpr std::chrono::milliseconds flush_interval(500);
+/// Rows after which ranks exchange in any case, for memory's sake.
+constexpr std::size_t most_rows = 4096;
 
 std::string header_of(const std::vector<std::string>& columns) {
   std::string header;
@@ -60,9 +62,14 @@ std::string csv_cell(const std::string& text) {
   return cell + "\"";
 }
 
-CsvLog::CsvLog(std::filesystem::path path, const std::vector<std::string>& columns, int first_step,
-               Teuchos::RCP<const Communicator> communicator)
-    : path_(std::move(path)), communicator_(std::move(communicator)) {
+CsvLog::CsvLog(std::filesystem::path path, const std::vector<std::string>& columns, int first_step, std::size_t part,
+               Join join, Teuchos::RCP<const Communicator> communicator)
+    : path_(std::move(path)),
+      communicator_(std::move(communicator)),
+      join_(std::move(join)),
+      numbers_(columns.size() - 2),
+      record_(2 + part),
+      interval_(first_step) {
   const std::string header = header_of(columns);
   std::string kept = header + "\n";
   if (first_step > 0) {
@@ -77,28 +84,51 @@ CsvLog::CsvLog(std::filesystem::path path, const std::vector<std::string>& colum
   });
 }
 
-void CsvLog::add(int step, const std::vector<double>& values) {
-  if (communicator_->getRank() == 0) {
-    row_ = std::to_string(step);
-    for (const double value : values) fmt::format_to(std::back_inserter(row_), ",{}", value);
-    row_ += '\n';
-    file_ << row_;
-    if (std::chrono::steady_clock::now() - flushed_ > flush_interval) flush();
+void CsvLog::add(int step, double time, const std::vector<double>& part) {
+  if (part.size() + 2 != record_) {
+    throw std::logic_error(fmt::format("CsvLog: a part of {} numbers; expected {}", part.size(), record_ - 2));
   }
-  if (++rows_ % 256 == 0) check();
+  kept_.push_back(step);
+  kept_.push_back(time);
+  kept_.insert(kept_.end(), part.begin(), part.end());
+  if (!interval_.due(step) && kept_.size() < most_rows * record_) return;
+  flush();
+  const int mine = interval_.steps_to_come(step);
+  int least = mine;
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MIN, 1, &mine, &least);
+  interval_.exchanged(step, least);
 }
 
 void CsvLog::flush() {
-  if (communicator_->getRank() != 0) return;
+  const int ranks = communicator_->getSize();
+  if (ranks == 1) {
+    write(kept_);
+  } else {
+    const bool writes = communicator_->getRank() == 0;
+    std::vector<double> all(writes ? kept_.size() * ranks : 0);
+    const auto count = static_cast<int>(kept_.size());
+    Teuchos::gather(kept_.data(), count, all.data(), count, 0, *communicator_);
+    if (writes) write(all);
+  }
+  kept_.clear();
   file_.flush();
-  flushed_ = std::chrono::steady_clock::now();
-}
-
-void CsvLog::check() {
-  flush();
   throw_together(
       *communicator_, path_.string(),
       file_.fail() ? std::optional<Fault>(Fault{"", "cannot be written", "room on the disk"}) : std::nullopt);
+}
+
+void CsvLog::write(const std::vector<double>& records) {
+  std::vector<const double*> parts(communicator_->getSize());
+  std::vector<double> numbers(numbers_);
+  std::string text;
+  for (std::size_t at = 0; at < kept_.size(); at += record_) {
+    for (std::size_t rank = 0; rank < parts.size(); ++rank) parts[rank] = &records[rank * kept_.size() + at] + 2;
+    join_(parts, numbers);
+    fmt::format_to(std::back_inserter(text), "{},{}", static_cast<int>(kept_[at]), kept_[at + 1]);
+    for (const double number : numbers) fmt::format_to(std::back_inserter(text), ",{}", number);
+    text += '\n';
+  }
+  file_ << text;
 }
 
 }  // namespace kiln

@@ -26,7 +26,7 @@ struct SourceClusters {
   std::vector<GlobalIndex> rows;            ///< ids of the rows that are evaluated, ascending
   std::vector<std::size_t> row_offsets;     ///< rows + 1: where each row's clusters begin
   std::vector<std::size_t> row_clusters;    ///< numbers of the clusters a row sums over
-  std::vector<double> row_weights;          ///< w_ic of each of these: the sum of its members' w_ij
+  std::vector<double> row_weights;          ///< w_ic of each of these: the sum of its members' w_ij, or near it
   std::vector<std::size_t> member_offsets;  ///< clusters + 1: where each cluster's members begin
   std::vector<GlobalIndex> members;         ///< ids of the particles in a cluster
   std::vector<double> shares;               ///< a_m of each member

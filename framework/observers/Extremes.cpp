@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -29,6 +29,20 @@ std::pair<double, double> range(const View& values, std::size_t first, std::size
     largest = data[index] > largest ? data[index] : largest;
   }
   return {smallest, largest};
+}
+
+/// Joins the ranks' pairs of value and particle, largest and smallest in turn, to those of all particles.
+void join(const std::vector<const double*>& parts, std::vector<double>& numbers) {
+  for (std::size_t which = 0; which < numbers.size() / 2; ++which) {
+    const double sign = which % 2 == 0 ? 1.0 : -1.0;
+    const double* best = parts[0] + 2 * which;
+    for (const double* const part : parts) {
+      const double* const other = part + 2 * which;
+      // Equal values go to the lowest id, whichever rank holds it.
+      if (sign * other[0] > sign * best[0] || (other[0] == best[0] && other[1] < best[1])) best = other;
+    }
+    std::copy_n(best, 2, numbers.begin() + static_cast<std::ptrdiff_t>(2 * which));
+  }
 }
 
 }  // namespace
@@ -58,60 +72,44 @@ std::vector<std::string> Extremes::columns() const {
   return columns;
 }
 
-std::vector<Extremes::Extreme> Extremes::local_extremes(const Moment& moment) {
+double Extremes::particle_with(double value, const VectorView::HostMirror& state, std::size_t component) const {
+  for (std::size_t index = component; index < state.extent(0); index += fields_.size()) {
+    if (state(index) != value) continue;
+    return static_cast<double>(
+        context_.method.particles()->getGlobalElement(static_cast<LocalIndex>(index / fields_.size())));
+  }
+  return -1.0;
+}
+
+std::vector<double> Extremes::local_extremes(const Moment& moment) {
   context_.method.state(moment.x, state_);
   const auto state = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_);
   const std::size_t components = fields_.size();
-  std::vector<Extreme> extremes;
+  std::vector<double> extremes;
   for (std::size_t component = 0; component < components; ++component) {
     const auto [smallest, largest] = range(state, component, components);
-    const auto extreme = [&](double value, double none) {
-      for (std::size_t index = component; index < state.extent(0); index += components) {
-        if (state(index) != value) continue;
-        const auto particle = static_cast<LocalIndex>(index / components);
-        return Extreme{value, static_cast<double>(context_.method.particles()->getGlobalElement(particle))};
-      }
-      return Extreme{none, -1.0};
-    };
-    extremes.push_back(extreme(largest, -infinity));
-    extremes.push_back(extreme(smallest, infinity));
+    for (const double value : {largest, smallest}) {
+      extremes.push_back(value);
+      extremes.push_back(particle_with(value, state, component));
+    }
   }
   return extremes;
 }
 
 void Extremes::begin() {
-  log_ = std::make_unique<CsvLog>(context_.folder / file_name, columns(), context_.first_step, context_.communicator);
+  log_ = std::make_unique<CsvLog>(context_.folder / file_name, columns(), context_.first_step, 4 * fields_.size(), join,
+                                  context_.communicator);
 }
 
 void Extremes::observe(const Moment& moment) {
-  if (moment.step % every_ == 0 || moment.step == moment.last_step) add_row(moment);
+  if (moment.step % every_ == 0 || moment.step == moment.last_step) {
+    log_->add(moment.step, moment.time, local_extremes(moment));
+  }
   if (moment.checkpoint) log_->flush();
 }
 
-void Extremes::add_row(const Moment& moment) {
-  const std::vector<Extreme> mine = local_extremes(moment);
-  const int ranks = context_.communicator->getSize();
-  std::vector<Extreme> all(mine.size() * static_cast<std::size_t>(ranks));
-  Teuchos::gatherAll(*context_.communicator, static_cast<int>(2 * mine.size()), &mine.data()->value,
-                     static_cast<int>(2 * all.size()), &all.data()->value);
-  std::vector<double> row{moment.time};
-  for (std::size_t which = 0; which < mine.size(); ++which) {
-    const double sign = which % 2 == 0 ? 1.0 : -1.0;
-    Extreme best = all[which];
-    for (std::size_t at = which; at < all.size(); at += mine.size()) {
-      const bool better = sign * all[at].value > sign * best.value;
-      // Equal values go to the lowest id, whichever rank holds it.
-      const bool earlier = all[at].value == best.value && all[at].particle < best.particle;
-      if (better || earlier) best = all[at];
-    }
-    row.push_back(best.value);
-    row.push_back(best.particle);
-  }
-  log_->add(moment.step, row);
-}
-
 void Extremes::finish(RunReport& report) {
-  log_->check();
+  log_->flush();
   CsvTable table;
   const std::filesystem::path path = context_.folder / file_name;
   on_root(*context_.communicator, path.string(), [&]() -> std::optional<Fault> {

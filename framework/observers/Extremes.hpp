@@ -26,14 +26,11 @@ class Extremes : public Observer {
   void finish(RunReport& report) override;
 
  private:
-  struct Extreme {
-    double value;
-    double particle;  ///< global id; exact as a double
-  };
   std::vector<std::string> columns() const;
-  void add_row(const Moment& moment);
-  /// Largest and smallest of each component on this rank, in turn.
-  std::vector<Extreme> local_extremes(const Moment& moment);
+  /// Value and particle of the largest and the smallest of each component on this rank, in turn.
+  std::vector<double> local_extremes(const Moment& moment);
+  /// The global id, exact as a double, of the first particle on this rank with this value; −1 without one.
+  double particle_with(double value, const VectorView::HostMirror& state, std::size_t component) const;
 
   Context context_;
   int every_;

@@ -44,7 +44,8 @@ class Observer {
   /// Before the first moment, once, when all observers of the run have been built: makes the observer's files.
   virtual void begin() = 0;
   virtual void observe(const Moment& moment) = 0;
-  /// After the last step; adds what belongs into the run's report.
+  /// After the last step, also of a run that diverged or was stopped: all that was observed reaches the disk, and what
+  /// belongs into the run's report is added.
   virtual void finish(RunReport& report) = 0;
 };
 

@@ -52,8 +52,7 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
       every_(list.get<int>("every")),
       probes_(find_probes(list, context.method)),
       fields_(method_.fields()),
-      local_(probes_.size() * fields_.size()),
-      values_(probes_.size() * fields_.size()) {
+      part_(probes_.size() * fields_.size()) {
   std::vector<LocalIndex> places;
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     if (probes_[p].particle.rank != communicator_->getRank()) continue;
@@ -66,7 +65,14 @@ ProbeObserver::ProbeObserver(const Teuchos::ParameterList& list, const Context& 
 }
 
 void ProbeObserver::begin() {
-  log_ = std::make_unique<CsvLog>(file_, columns(), context_.first_step, communicator_);
+  // Each number is on one rank and 0 on the others.
+  const auto join = [](const std::vector<const double*>& parts, std::vector<double>& numbers) {
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      numbers[k] = 0.0;
+      for (const double* part : parts) numbers[k] += part[k];
+    }
+  };
+  log_ = std::make_unique<CsvLog>(file_, columns(), context_.first_step, part_.size(), join, communicator_);
   write_places();
 }
 
@@ -92,28 +98,19 @@ void ProbeObserver::write_places() const {
   write_atomically(context_.folder / "probes.json", places.dump(2) + "\n", communicator_);
 }
 
-void ProbeObserver::gather_values(ConstVectorView x) {
-  reader_(x, read_);
-  Kokkos::deep_copy(read_host_, read_);
-  const std::size_t components = fields_.size();
-  for (std::size_t i = 0; i < mine_.size(); ++i) {
-    for (std::size_t c = 0; c < components; ++c) local_[mine_[i] * components + c] = read_host_(i * components + c);
-  }
-  // Each value is on one rank and 0 on the others.
-  Teuchos::reduce(local_.data(), values_.data(), static_cast<int>(values_.size()), Teuchos::REDUCE_SUM, 0,
-                  *communicator_);
-}
-
 void ProbeObserver::observe(const Moment& moment) {
   if (moment.step % every_ == 0 || moment.step == moment.last_step) add_row(moment);
   if (moment.checkpoint) log_->flush();
 }
 
 void ProbeObserver::add_row(const Moment& moment) {
-  gather_values(moment.x);
-  std::vector<double> row{moment.time};
-  row.insert(row.end(), values_.begin(), values_.end());
-  log_->add(moment.step, row);
+  reader_(moment.x, read_);
+  Kokkos::deep_copy(read_host_, read_);
+  const std::size_t components = fields_.size();
+  for (std::size_t i = 0; i < mine_.size(); ++i) {
+    for (std::size_t c = 0; c < components; ++c) part_[mine_[i] * components + c] = read_host_(i * components + c);
+  }
+  log_->add(moment.step, moment.time, part_);
 }
 
 /// From the file, so that a restarted run's summary covers its earlier part too.
@@ -141,7 +138,7 @@ nlohmann::json ProbeObserver::summary() const {
 }
 
 void ProbeObserver::finish(RunReport& report) {
-  log_->check();
+  log_->flush();
   std::string text;
   on_root(*communicator_, file_.string(), [&]() -> std::optional<Fault> {
     text = summary().dump();

@@ -31,7 +31,6 @@ class ProbeObserver : public Observer {
   void write_places() const;
   std::vector<std::string> columns() const;
   void add_row(const Moment& moment);
-  void gather_values(ConstVectorView x);
   nlohmann::json summary() const;
 
   Context context_;
@@ -45,8 +44,7 @@ class ProbeObserver : public Observer {
   Method::Reader reader_;          ///< of these
   VectorView read_;
   VectorView::HostMirror read_host_;
-  std::vector<double> local_;    ///< probe by probe, component by component; 0 where another rank has the particle
-  std::vector<double> values_;   ///< likewise, complete on rank 0
+  std::vector<double> part_;     ///< probe by probe, component by component; 0 where another rank has the particle
   std::unique_ptr<CsvLog> log_;  ///< null before begin()
 };
 

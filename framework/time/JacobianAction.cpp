@@ -7,8 +7,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "framework/base/Loop.hpp"
+
 namespace kiln {
 namespace {
+
+// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string scale_rows_label = "kiln::time::scale_rows";
 
 double largest_entry(const ConstVectorView& values) {
   double largest = 0.0;
@@ -29,8 +34,8 @@ void largest_over_ranks(const Communicator& communicator, std::vector<double>& v
 
 void scale_rows(const ConstVectorView& diagonal, const ConstMatrixView& v, const MatrixView& product) {
   for (std::size_t column = 0; column < v.extent(1); ++column) {
-    Kokkos::parallel_for(
-        "kiln::time::scale_rows", RangePolicy(0, static_cast<LocalIndex>(diagonal.extent(0))),
+    loop(
+        scale_rows_label, static_cast<LocalIndex>(diagonal.extent(0)),
         KOKKOS_LAMBDA(const LocalIndex i) { product(i, column) = diagonal(i) * v(i, column); });
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Loop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/registry/Registry.hpp"
@@ -19,10 +20,11 @@ namespace {
 // Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
 const std::string add_level_label = "kiln::time::add a level to the history";
 
-void add_level(double alpha, const ConstVectorView& u, const VectorView& history) {
-  Kokkos::parallel_for(
-      add_level_label, RangePolicy(0, static_cast<LocalIndex>(history.extent(0))),
-      KOKKOS_LAMBDA(const LocalIndex i) { history(i) += alpha * u(i); });
+/// `first`: the history is overwritten.
+void add_level(double alpha, const ConstVectorView& u, bool first, const VectorView& history) {
+  loop(
+      add_level_label, static_cast<LocalIndex>(history.extent(0)),
+      KOKKOS_LAMBDA(const LocalIndex i) { history(i) = (first ? 0.0 : history(i)) + alpha * u(i); });
 }
 
 MultistepCoefficients starter_of(const MultistepCoefficients& scheme) {
@@ -129,11 +131,10 @@ void LinearMultistep::evaluate_anew() {
 }
 
 void LinearMultistep::gather_history(const MultistepCoefficients& scheme) {
-  Kokkos::deep_copy(history_, 0.0);
   for (std::size_t j = 1; j <= scheme.steps(); ++j) {
     const Level& level = levels_[j - 1];
-    if (scheme.alpha[j] != 0.0) add_level(scheme.alpha[j], level.u, history_);
-    if (scheme.beta[j] != 0.0) add_level(-step_ * scheme.beta[j], level.f, history_);
+    if (j == 1 || scheme.alpha[j] != 0.0) add_level(scheme.alpha[j], level.u, j == 1, history_);
+    if (scheme.beta[j] != 0.0) add_level(-step_ * scheme.beta[j], level.f, false, history_);
   }
 }
 
@@ -150,7 +151,7 @@ SolveReport LinearMultistep::advance(VectorView x, double time) {
     const MultistepCoefficients& scheme = starting ? starter_ : coefficients_;
     gather_history(scheme);
     report = method_.solve({scheme.alpha[0], step_ * scheme.beta[0], time, history_}, x, next.u, next.f);
-    Kokkos::deep_copy(next.x, x);
+    copy_values(x, next.x);
     next.time = time;
   }
   // The oldest level is the one the next step writes.

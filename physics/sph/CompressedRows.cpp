@@ -1,5 +1,6 @@
 #include <string>
 
+#include "framework/base/Loop.hpp"
 #include "physics/sph/PairLayout.hpp"
 #include "physics/sph/PairRows.hpp"
 
@@ -48,8 +49,8 @@ HeatDomain whole_lanes(const HeatDomain& domain) {
 
 template <PairQuantity quantity>
 void sum_rows(const PairRows& pairs, const ConstThermalStateView& states, const VectorView& sums) {
-  Kokkos::parallel_for(
-      sum_label, RangePolicy(0, static_cast<LocalIndex>(sums.extent(0))), KOKKOS_LAMBDA(LocalIndex i) {
+  loop(
+      sum_label, static_cast<LocalIndex>(sums.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
 #ifdef KILN_LANES
         sums(i) = pair_sum_by_lanes<quantity>(states.data(), states(i), pairs.sources_of(i), pairs.weights_of(i),
                                               pairs.count(i));

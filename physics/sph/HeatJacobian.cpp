@@ -38,9 +38,9 @@ void HeatModel::rate_jacobian_diagonal(ConstVectorView u, double time, VectorVie
   check("rate_jacobian_diagonal", u.extent(0), diagonal.extent(0));
   static_cast<void>(time);  // the absorbed power does not depend on the temperature when properties stand still
   update_states(u);
-  layout_->sum(PairQuantity::conductance, states_, sums_);
+  layout_->sum(PairQuantity::conductance, states_, conductances_);
   const auto states = states_;
-  const auto sums = sums_;
+  const auto sums = conductances_;
   const auto masses = domain_.masses;
   Kokkos::parallel_for(
       "kiln::sph::rate jacobian diagonal", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/Loop.hpp"
 #include "framework/registry/Registry.hpp"
 #include "physics/sph/Kernel.hpp"
 #include "physics/sph/Material.hpp"
@@ -97,8 +98,10 @@ HeatModel::HeatModel(const Teuchos::ParameterList& list, const MaterialTable& ta
       initial_temperature_(initial_temperature(list)),
       heat_source_(Registry<HeatSource>::create(list.sublist("heat_source"), {})),
       absorbed_("absorbed power", domain_.areas.extent(0)),
-      sums_("pair sums", domain_.areas.extent(0)),
-      states_("thermal states", domain_.masses.extent(0) + 1) {
+      states_("thermal states", domain_.masses.extent(0) + 1),
+      states_of_(domain_.masses.extent(0)),
+      fluxes_("pair sums of fluxes", domain_.areas.extent(0)),
+      conductances_("pair sums of conductances", domain_.areas.extent(0)) {
   Kokkos::deep_copy(states_, nobody);
   parameters_.add("heat_source", heat_source_->parameters());
   const auto areas = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), domain_.areas);
@@ -136,6 +139,8 @@ void HeatModel::initial_state(VectorView u) const {
 }
 
 void HeatModel::update_states(ConstVectorView u) const {
+  if (states_of_.is(u)) return;
+  fluxes_hold_ = false;
   const auto states = states_;
   const auto masses = domain_.masses;
   const MaterialTable table = table_;
@@ -143,15 +148,16 @@ void HeatModel::update_states(ConstVectorView u) const {
 #ifdef KILN_LANES
   const LocalIndex whole = source_count() / lane_count;
   first = whole * lane_count;
-  Kokkos::parallel_for(
-      thermal_lanes_label, RangePolicy(0, whole), KOKKOS_LAMBDA(LocalIndex group) {
+  loop(
+      thermal_lanes_label, whole, KOKKOS_LAMBDA(LocalIndex group) {
         const LocalIndex j = group * lane_count;
         store_states(&states(j), thermal_lanes(table, lanes_at(&u(j)), lanes_at(&masses(j))));
       });
 #endif
-  Kokkos::parallel_for(
-      thermal_states_label, RangePolicy(first, source_count()),
-      KOKKOS_LAMBDA(LocalIndex j) { states(j) = thermal_state(table, u(j), masses(j)); });
+  loop(
+      thermal_states_label, source_count() - first,
+      KOKKOS_LAMBDA(LocalIndex j) { states(first + j) = thermal_state(table, u(first + j), masses(first + j)); });
+  states_of_.remember(u);
 }
 
 bool HeatModel::absorbed_holds(double time) const {
@@ -175,22 +181,22 @@ void HeatModel::update_absorbed(double time) const {
   const auto heated = heated_;
   const auto flux = heated_flux_;
   const auto areas = domain_.areas;
-  Kokkos::parallel_for(
-      absorbed_label, RangePolicy(0, number),
-      KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
+  loop(
+      absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
 }
 
 void HeatModel::rate(ConstVectorView u, double time, VectorView f) const {
   check("rate", u.extent(0), f.extent(0));
   update_states(u);
   update_absorbed(time);
-  layout_->sum(PairQuantity::flux, states_, sums_);
+  if (!fluxes_hold_) layout_->sum(PairQuantity::flux, states_, fluxes_);
+  fluxes_hold_ = true;
   const auto states = states_;
-  const auto sums = sums_;
+  const auto sums = fluxes_;
   const auto masses = domain_.masses;
   const auto absorbed = absorbed_;
-  Kokkos::parallel_for(
-      rate_label, RangePolicy(0, row_count()),
+  loop(
+      rate_label, row_count(),
       KOKKOS_LAMBDA(LocalIndex i) { f(i) = heat_rate(states(i), sums(i), masses(i), absorbed(i)); });
 }
 

@@ -3,6 +3,7 @@
 #include <Teuchos_ParameterList.hpp>
 #include <memory>
 
+#include "framework/model/LastState.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/model/PairwiseModel.hpp"
 #include "framework/registry/Specification.hpp"
@@ -71,7 +72,7 @@ class HeatModel final : public Model, public PairwiseModel {
   LocalIndex row_count() const { return static_cast<LocalIndex>(domain_.areas.extent(0)); }
   LocalIndex source_count() const { return static_cast<LocalIndex>(domain_.masses.extent(0)); }
   void check(const char* method, std::size_t u, std::size_t f) const;
-  /// Fills states_ from temperatures.
+  /// Fills states_ from temperatures, if they are not those of the last call.
   void update_states(ConstVectorView u) const;
   /// Fills states_, slopes_ and absorbed_.
   void linearise(ConstVectorView u, double time) const;
@@ -112,8 +113,11 @@ class HeatModel final : public Model, public PairwiseModel {
   VectorView heated_flux_;                               ///< q in W/m² at heated_
   VectorView absorbed_;                                  ///< q_i A_i in W of every row
   mutable std::vector<double> absorbed_at_;              ///< the parameters and, last, the time it was taken at
-  VectorView sums_;                                      ///< of a PairQuantity, of every row
   ThermalStateView states_;                              ///< of the sources and, last, nobody
+  mutable LastState states_of_;                          ///< whose states_ they are
+  VectorView fluxes_;                                    ///< pair sums of every row
+  mutable bool fluxes_hold_ = false;                     ///< whether fluxes_ are those of states_
+  VectorView conductances_;                              ///< pair sums of every row
   mutable Kokkos::View<ThermalSlopes*, Device> slopes_;  ///< made by the first Jacobian
   mutable PackedView packed_;
   mutable Teuchos::RCP<CrsMatrix> matrix_;

@@ -2,6 +2,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/base/Loop.hpp"
 #include "framework/model/PointRates.hpp"
 #include "physics/sph/HeatModel.hpp"
 #include "physics/sph/PairRows.hpp"
@@ -10,6 +11,16 @@
 namespace kiln {
 
 #ifdef KILN_LANES
+namespace {
+
+// Labels made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string absorbed_label = "kiln::sph::absorbed power of points";
+const std::string states_label = "kiln::sph::thermal states of points";
+const std::string sums_label = "kiln::sph::pair sums of points";
+const std::string rates_label = "kiln::sph::rates of points";
+
+}  // namespace
+
 /// Eight points are a vector; its lanes are the same particle in eight states. What a pair reads of its neighbour are
 /// whole vectors, so that nothing is gathered, and neighbours and weights serve eight points.
 class HeatModel::AtPoints final : public PointRates {
@@ -22,20 +33,27 @@ class HeatModel::AtPoints final : public PointRates {
                 groups_ * static_cast<std::size_t>(model.source_count())),
         specific_heats_("specific heats of points", groups_ * static_cast<std::size_t>(model.row_count())),
         fluxes_("heat flux of points", model.heated_.extent(0), points.count()),
-        absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())) {
+        absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())),
+        pair_fluxes_("pair sums of points", groups_ * static_cast<std::size_t>(model.row_count())),
+        summed_(points.count() * static_cast<std::size_t>(model.source_count())) {
     if (points_.count() > 0) points_.set(0, model_.parameters_);
   }
 
   void rates(ConstMatrixView u, double time, MatrixView f) override {
-    if (u.extent(0) != points_.count() || f.extent(0) != points_.count()) {
-      throw std::invalid_argument("HeatModel: arrays of another number of points");
+    if (u.extent(0) != points_.count() || f.extent(0) != points_.count() || !u.span_is_contiguous()) {
+      throw std::invalid_argument("HeatModel: arrays of another number of points, or with gaps");
     }
     model_.check("rates", u.extent(1), f.extent(1));
     if (!(time == absorbed_time_)) update_absorbed(time);
-    for (std::size_t group = 0; group < groups_; ++group) {
-      update_states(group, u);
-      sum_pairs(group, f);
+    const ConstVectorView all(u.data(), u.size());
+    if (!summed_.is(all)) {
+      for (std::size_t group = 0; group < groups_; ++group) {
+        update_states(group, u);
+        sum_pairs(group);
+      }
+      summed_.remember(all);
     }
+    for (std::size_t group = 0; group < groups_; ++group) form_rates(group, f);
   }
 
  private:
@@ -57,8 +75,8 @@ class HeatModel::AtPoints final : public PointRates {
     const auto fluxes = fluxes_;
     const auto areas = model_.domain_.areas;
     const std::size_t rows = model_.row_count(), points = points_.count();
-    Kokkos::parallel_for(
-        "kiln::sph::absorbed power of points", RangePolicy(0, number), KOKKOS_LAMBDA(LocalIndex h) {
+    loop(
+        absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) {
           const LocalIndex row = heated(h);
           for (std::size_t point = 0; point < points; ++point) {
             absorbed(point / lane_count * rows + row, point % lane_count) = fluxes(h, point) * areas(row);
@@ -73,8 +91,8 @@ class HeatModel::AtPoints final : public PointRates {
     const MaterialTable table = model_.table_;
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
-    Kokkos::parallel_for(
-        "kiln::sph::thermal states of points", RangePolicy(0, model_.source_count()), KOKKOS_LAMBDA(LocalIndex j) {
+    loop(
+        states_label, model_.source_count(), KOKKOS_LAMBDA(LocalIndex j) {
           Lanes temperature = {};
           if (points == lane_count) {
             temperature = lanes_at(&u(first_point, j));
@@ -89,21 +107,32 @@ class HeatModel::AtPoints final : public PointRates {
         });
   }
 
-  void sum_pairs(std::size_t group, const MatrixView& f) {
+  void sum_pairs(std::size_t group) {
     const PairRows pairs(model_.domain_);
+    const auto states = states_;
+    const auto fluxes = pair_fluxes_;
+    const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
+    loop(
+        sums_label, model_.row_count(), KOKKOS_LAMBDA(LocalIndex i) {
+          store_lanes(&fluxes(group * rows + i, 0),
+                      pair_sum_of_points(&states(first), states(first + i), pairs.sources_of(i), pairs.weights_of(i),
+                                         pairs.count(i)));
+        });
+  }
+
+  void form_rates(std::size_t group, const MatrixView& f) {
     const auto states = states_;
     const auto specific_heats = specific_heats_;
     const auto absorbed = absorbed_;
+    const auto fluxes = pair_fluxes_;
     const auto masses = model_.domain_.masses;
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
-    Kokkos::parallel_for(
-        "kiln::sph::rates of points", RangePolicy(0, model_.row_count()), KOKKOS_LAMBDA(LocalIndex i) {
-          const StateLanes own = states(first + i);
-          const Lanes sum =
-              pair_sum_of_points(&states(first), own, pairs.sources_of(i), pairs.weights_of(i), pairs.count(i));
-          const Lanes rate = heat_rate(own.volume, lanes_at(&specific_heats(group * rows + i, 0)), sum, masses(i),
-                                       lanes_at(&absorbed(group * rows + i, 0)));
+    loop(
+        rates_label, model_.row_count(), KOKKOS_LAMBDA(LocalIndex i) {
+          const Lanes rate =
+              heat_rate(states(first + i).volume, lanes_at(&specific_heats(group * rows + i, 0)),
+                        lanes_at(&fluxes(group * rows + i, 0)), masses(i), lanes_at(&absorbed(group * rows + i, 0)));
           if (points == lane_count) {
             store_lanes(&f(first_point, i), rate);
           } else {
@@ -121,6 +150,8 @@ class HeatModel::AtPoints final : public PointRates {
   LaneView specific_heats_;                   ///< group by group: of the rows
   MatrixView fluxes_;                         ///< at the heated rows, of each point
   LaneView absorbed_;                         ///< as specific_heats_, at absorbed_time_
+  LaneView pair_fluxes_;                      ///< as specific_heats_, at summed_
+  LastState summed_;
   double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
 };
 

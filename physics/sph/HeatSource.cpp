@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "framework/base/Loop.hpp"
+
 namespace kiln {
 namespace {
 
@@ -58,8 +60,8 @@ class GaussianBeam final : public HeatSource {
     const double y = start_[1] + velocity_[1] * time;
     const double peak = power_ / (2.0 * pi * width_ * width_);
     const double exponent = -1.0 / (2.0 * (printed_ ? pi : 1.0) * width_ * width_);
-    Kokkos::parallel_for(
-        beam_label, RangePolicy(0, static_cast<LocalIndex>(positions.extent(0))), KOKKOS_LAMBDA(LocalIndex i) {
+    loop(
+        beam_label, static_cast<LocalIndex>(positions.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
           const double dx = positions(i, 0) - x;
           const double dy = positions(i, 1) - y;
           q(i) = peak * exp(exponent * (dx * dx + dy * dy));

@@ -104,6 +104,8 @@ VortexModel::VortexModel(const Teuchos::ParameterList& list, const Teuchos::RCP<
     host(j, 1) = table_.y[place];
   }
   Kokkos::deep_copy(positions_, host);
+  last_state_ = LastState(2 * own_sources.size());
+  last_rate_ = VectorView("kiln::vortex::last rate", 2 * own_rows.size());
   if (table_.has_lists()) {
     make_lists(own_rows, own_sources);
   } else {
@@ -205,9 +207,25 @@ void VortexModel::initial_state(VectorView u) const {
       });
 }
 
+bool VortexModel::last_rate_holds(ConstVectorView u) const {
+  const std::vector<Parameter>& parameters = parameters_.list();
+  const auto same = [](double last, const Parameter& parameter) { return last == *parameter.value; };
+  return last_parameters_.size() == parameters.size() &&
+         std::equal(last_parameters_.begin(), last_parameters_.end(), parameters.begin(), same) && last_state_.is(u);
+}
+
 void VortexModel::rate(ConstVectorView u, double, VectorView f) const {
   check("rate", u.extent(0), f.extent(0));
   if (row_count() == 0) return;
+  if (last_rate_holds(u)) return copy_values(last_rate_, f);
+  sum_velocities(u, f);
+  copy_values(f, last_rate_);
+  last_state_.remember(u);
+  last_parameters_.clear();
+  for (const Parameter& parameter : parameters_.list()) last_parameters_.push_back(*parameter.value);
+}
+
+void VortexModel::sum_velocities(ConstVectorView u, VectorView f) const {
   if (table_.has_lists()) {
     kernel_->velocities(lists(u), row_count(), factor(), f.data());
     return;

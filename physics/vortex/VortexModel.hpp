@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/model/LastState.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/model/PairwiseModel.hpp"
 #include "framework/registry/Specification.hpp"
@@ -68,6 +69,9 @@ class VortexModel final : public Model, public PairwiseModel {
   LocalIndex source_count() const { return static_cast<LocalIndex>(positions_.extent(0)); }
   void check(const char* method, std::size_t u, std::size_t f) const;
   void require_no_lists(const char* method) const;
+  /// Whether last_rate_ is that of u and of the parameters as they are.
+  bool last_rate_holds(ConstVectorView u) const;
+  void sum_velocities(ConstVectorView u, VectorView f) const;
   /// Fills arrays_ from a state.
   void arrange(ConstVectorView u) const;
   VortexArrays arrays() const;
@@ -86,6 +90,9 @@ class VortexModel final : public Model, public PairwiseModel {
   std::unique_ptr<VortexKernel> kernel_;
   std::unique_ptr<VortexSum> sum_;
   double circulation_scale_;
+  mutable LastState last_state_;
+  mutable std::vector<double> last_parameters_;
+  VectorView last_rate_;
 
   // Where every source acts on every row: sources by id, up to a multiple of the lanes.
   LocalIndex array_count_ = 0, array_padded_ = 0;

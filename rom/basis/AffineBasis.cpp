@@ -39,8 +39,7 @@ void AffineBasis::begin_at(ConstVectorView earlier) const {
 void AffineBasis::state(ConstVectorView x, VectorView u) const {
   const ConstVectorView earlier = part(x, 0, first_);
   if (!std::equal(earlier.data(), earlier.data() + first_, earlier_.data())) begin_at(earlier);
-  std::copy_n(beginning_.data(), beginning_.extent(0), u.data());
-  dense::multiply(1.0, tangent_, part(x, first_, size()), 1.0, u);
+  dense::affine(beginning_, tangent_, part(x, first_, size()), u);
 }
 
 std::unique_ptr<TrialSpace> AffineBasis::restricted(const std::vector<LocalIndex>& particles, int components) const {

@@ -1,8 +1,12 @@
 #include "rom/clustering/CertifiedClusters.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "framework/base/Error.hpp"
 #include "rom/clustering/ClusterTree.hpp"
 
 namespace kiln {
@@ -84,27 +88,66 @@ class NodeMotion {
   std::vector<Motion> nodes_;
 };
 
+/// Openings that a limit on the number of clusters chooses from.
+constexpr int openings = 128;
+double opening_of(int k) { return 8.0 * std::exp2(-k / 8.0); }
+
+/// The smallest opening that leaves each row at most so many clusters. Throws InputError where none does.
+std::vector<double> smallest_openings(std::size_t most, const std::string& path, const PairWeights& pairs,
+                                      const std::function<std::size_t(std::size_t row, double opening)>& count) {
+  std::vector<double> result;
+  for (std::size_t row = 0; row < pairs.rows.size(); ++row) {
+    int fits = -1, exceeds = openings;
+    while (exceeds - fits > 1) {
+      const int middle = (fits + exceeds) / 2;
+      (count(row, opening_of(middle)) <= most ? fits : exceeds) = middle;
+    }
+    if (fits < 0) {
+      throw InputError(path + ".clusters",
+                       fmt::format("{} are too few: row {} has {} even with the widest opening", most, pairs.rows[row],
+                                   count(row, opening_of(0))),
+                       "at least as many");
+    }
+    result.push_back(opening_of(fits));
+  }
+  return result;
+}
+
 }  // namespace
 
 Specification CertifiedClusters::specification() {
   Specification s;
-  s.real("opening", "a cluster is taken where its size is less than this times its distance at all moments")
+  s.real("opening",
+         "a cluster is taken where its size is less than this times its distance at all moments; 0.5 if "
+         "neither this nor `clusters` is given")
       .above(0)
-      .defaults_to(0.5);
+      .optional();
+  s.integer("clusters", "most clusters of a row; each row's opening follows from it").at_least(1).optional();
   s.real("smooth",
          "length over which a source may move without its pair term changing much, as within a core radius; distances "
          "count as at least that, so that the number of clusters stops growing with the number of particles")
       .at_least(0)
       .defaults_to(0.0);
   s.integer("leaf", "most particles of a node that is not cut in two").at_least(1).defaults_to(1);
+  s.choice("weights",
+           "of clusters. sums: of their members' weights; fitted: near these, such that the rates of the training come "
+           "out right in the mean",
+           {"sums", "fitted"})
+      .defaults_to("sums");
+  s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
+    if (!list.isParameter("opening") || !list.isParameter("clusters")) return;
+    problems.push_back({"", "says both opening and clusters", "one of them: the other follows from it", ""});
+  });
   return s;
 }
 
 CertifiedClusters::CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&)
     : path_(list.name()),
-      opening_(list.get<double>("opening")),
-      smooth_(list.isParameter("smooth") ? list.get<double>("smooth") : 0.0),
-      leaf_(list.get<int>("leaf")) {}
+      opening_(list.isParameter("opening") ? list.get<double>("opening") : 0.5),
+      most_(list.isParameter("clusters") ? list.get<int>("clusters") : 0),
+      smooth_(list.get<double>("smooth")),
+      leaf_(list.get<int>("leaf")),
+      fitted_(list.get<std::string>("weights") == "fitted") {}
 
 SourceClusters CertifiedClusters::clusters(const PairWeights& pairs, const SourceMotion& motion) const {
   const SharedSources sources(pairs, path_);
@@ -122,9 +165,17 @@ SourceClusters CertifiedClusters::clusters(const PairWeights& pairs, const Sourc
               [&points](std::size_t, const std::vector<std::size_t>& members) { return halves(points, members); });
   }
   NodeMotion nodes(points, tree, sources.weights, motion.components);
-  return shared_clusters(pairs, sources, tree, Shares::by_weight, [&](std::size_t row, std::size_t node) {
-    return nodes.accepted(target_points[row], node, opening_, smooth_);
-  });
+  std::vector<double> opening(pairs.rows.size(), opening_);
+  const auto accepts = [&](std::size_t row, std::size_t node) {
+    return nodes.accepted(target_points[row], node, opening[row], smooth_);
+  };
+  if (most_ > 0) {
+    opening = smallest_openings(most_, path_, pairs, [&](std::size_t row, double tried) {
+      opening[row] = tried;
+      return row_count(row, pairs, sources, tree, accepts);
+    });
+  }
+  return shared_clusters(pairs, sources, tree, Shares::by_weight, accepts);
 }
 
 KILN_REGISTER(SourceClustering, CertifiedClusters, "robust",

@@ -11,19 +11,24 @@ namespace kiln {
 /// where at all moments the widest side of the box around its members is less than `opening` times the distance from
 /// the row to their mean, or than √(distance² + smooth²), where pair terms are regular at short distance. Means are
 /// weighted by |w|, so that a cluster's first moment is its members': what is left is of second order in size/distance.
-/// For weights that do not depend on the row.
+/// Instead of an opening, `clusters` may be given: each row then takes the smallest opening, of a fine grid of them,
+/// that gives it at most so many, and the online cost does not grow with the particles. For weights that do not depend
+/// on the row.
 class CertifiedClusters : public SourceClustering {
  public:
   static Specification specification();
   CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
-  bool weights_are_fitted() const override { return false; }
+  bool weights_are_fitted() const override { return fitted_; }
 
  private:
   std::string path_;
-  double opening_, smooth_;
+  double opening_;
+  std::size_t most_;  ///< clusters of a row; 0: as many as the opening gives
+  double smooth_;
   std::size_t leaf_;
+  bool fitted_;
 };
 
 }  // namespace kiln

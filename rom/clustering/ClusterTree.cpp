@@ -95,6 +95,11 @@ std::vector<double> shares_of(const ClusterTree& tree, const ClusterTree::Node& 
   return result;
 }
 
+std::size_t row_count(std::size_t row, const PairWeights& pairs, const SharedSources& sources, const ClusterTree& tree,
+                      const Accepts& accepts) {
+  return RowLists(pairs, sources, tree, accepts).of(row).size();
+}
+
 SourceClusters shared_clusters(const PairWeights& pairs, const SharedSources& sources, const ClusterTree& tree,
                                Shares shares, const Accepts& accepts) {
   const RowLists lists(pairs, sources, tree, accepts);

@@ -38,11 +38,17 @@ enum class Shares {
 std::vector<double> shares_of(const ClusterTree& tree, const ClusterTree::Node& node,
                               const std::vector<double>& weights, Shares shares);
 
+/// Whether a node stands for its members in a row's sum.
+using Accepts = std::function<bool(std::size_t row, std::size_t node)>;
+
+/// How many clusters shared_clusters() gives a row.
+std::size_t row_count(std::size_t row, const PairWeights& pairs, const SharedSources& sources, const ClusterTree& tree,
+                      const Accepts& accepts);
+
 /// The nodes that stand for their members in each row's sum. A node is taken where `accepts` says so and the row is not
 /// in it; else its children are looked at, and of a leaf the particles one by one. So every source is in exactly one of
 /// a row's clusters, and the row itself only where it is among its own sources. Rows share the clusters.
 /// Points of `tree` are places in `sources`.
-using Accepts = std::function<bool(std::size_t row, std::size_t node)>;
 SourceClusters shared_clusters(const PairWeights& pairs, const SharedSources& sources, const ClusterTree& tree,
                                Shares shares, const Accepts& accepts);
 

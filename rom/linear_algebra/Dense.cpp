@@ -4,6 +4,8 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 
+#include "framework/base/Lanes.hpp"
+
 namespace kiln::dense {
 namespace {
 
@@ -24,7 +26,43 @@ void multiply(Teuchos::ETransp transpose, double alpha, const ConstMatrixView& a
   Blas().GEMV(transpose, rows(a), columns(a), alpha, a.data(), leading_dimension(a), x.data(), 1, beta, y.data(), 1);
 }
 
+/// Entries of a matrix up to which affine() goes without BLAS: what a core keeps at hand.
+constexpr std::size_t short_product = 1 << 15;
+
+#ifdef KILN_LANES
+/// Rows i … i + Blocks · lane_count − 1 of y = b + A x.
+template <int Blocks>
+void affine_rows(const double* b, const ConstMatrixView& a, const double* x, double* y, std::size_t i) {
+  Lanes sums[Blocks];
+  for (int block = 0; block < Blocks; ++block) sums[block] = lanes_at(b + i + block * lane_count);
+  for (std::size_t k = 0; k < a.extent(1); ++k) {
+    const double* const column = &a(i, k);
+    const Lanes factor = all_lanes(x[k]);
+    for (int block = 0; block < Blocks; ++block) sums[block] += lanes_at(column + block * lane_count) * factor;
+  }
+  for (int block = 0; block < Blocks; ++block) store_lanes(y + i + block * lane_count, sums[block]);
+}
+#endif
+
 }  // namespace
+
+void affine(const ConstVectorView& b, const ConstMatrixView& a, const ConstVectorView& x, const VectorView& y) {
+  const std::size_t rows = a.extent(0), columns = a.extent(1);
+  if (rows * columns > short_product) {
+    std::copy_n(b.data(), rows, y.data());
+    return multiply(1.0, a, x, 1.0, y);
+  }
+  std::size_t i = 0;
+#ifdef KILN_LANES
+  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4>(b.data(), a, x.data(), y.data(), i);
+  for (; i + lane_count <= rows; i += lane_count) affine_rows<1>(b.data(), a, x.data(), y.data(), i);
+#endif
+  for (; i < rows; ++i) {
+    double sum = b(i);
+    for (std::size_t k = 0; k < columns; ++k) sum += a(i, k) * x(k);
+    y(i) = sum;
+  }
+}
 
 void multiply(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta, const VectorView& y) {
   multiply(Teuchos::NO_TRANS, alpha, a, x, beta, y);

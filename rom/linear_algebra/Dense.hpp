@@ -18,6 +18,9 @@ void multiply(double alpha, const ConstMatrixView& a, const ConstVectorView& x, 
 /// y = alpha Aᵀ x + beta y.
 void multiply_transposed(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta,
                          const VectorView& y);
+/// y = b + A x. For matrices so small that what BLAS does around its product takes longer than the product, as those of
+/// a sample mesh are; larger ones go to BLAS. y is none of the others.
+void affine(const ConstVectorView& b, const ConstMatrixView& a, const ConstVectorView& x, const VectorView& y);
 /// C = alpha op(A) op(B) + beta C.
 void product(Transpose transpose_a, Transpose transpose_b, double alpha, const ConstMatrixView& a,
              const ConstMatrixView& b, double beta, const MatrixView& c);
@@ -63,11 +66,11 @@ class HouseholderQr {
   std::vector<double> tau_;
 };
 
-/// LU factors of a small square matrix.
+/// LU factors of a small square matrix; of a very small one its inverse, too, so that a solve is a product.
 class LuFactors {
  public:
   /// Factors `a` in place and keeps it. Returns the reciprocal condition number in the 1-norm, 0 for a singular or
-  /// non-finite matrix; such factors must not be solved with.
+  /// non-finite matrix; such factors must not be solved with. Does not allocate where the size stays very small.
   double factor(const MatrixView& a);
   /// b = A⁻¹ b. Does not allocate.
   void solve(const VectorView& b) const;
@@ -75,8 +78,14 @@ class LuFactors {
   void inverse_transposed(const MatrixView& result) const;
 
  private:
+  static constexpr int largest_inverse = 64;
+
+  double reciprocal_condition(double norm);
+
   MatrixView factors_;
   std::vector<int> pivots_;
+  MatrixView inverse_transposed_;      ///< where the size is at most largest_inverse
+  mutable std::vector<double> right_;  ///< right-hand side of a solve by the inverse
 };
 
 }  // namespace kiln::dense

@@ -124,19 +124,49 @@ double LuFactors::factor(const MatrixView& a) {
   }
   int info = 0;
   Lapack().GETRF(n, n, factors_.data(), leading_dimension(factors_), pivots_.data(), &info);
-  if (info != 0) return 0.0;
-  std::vector<double> work(4 * n);
-  std::vector<int> integer_work(n);
-  double reciprocal = 0.0;
-  Lapack().GECON('1', n, factors_.data(), leading_dimension(factors_), norm, &reciprocal, work.data(),
-                 integer_work.data(), &info);
-  return info == 0 ? reciprocal : 0.0;
+  return info == 0 ? reciprocal_condition(norm) : 0.0;
+}
+
+double LuFactors::reciprocal_condition(double norm) {
+  const int n = static_cast<int>(factors_.extent(0));
+  if (n > largest_inverse) {
+    inverse_transposed_ = {};
+    std::vector<double> work(4 * n);
+    std::vector<int> integer_work(n);
+    double reciprocal = 0.0;
+    int info = 0;
+    Lapack().GECON('1', n, factors_.data(), leading_dimension(factors_), norm, &reciprocal, work.data(),
+                   integer_work.data(), &info);
+    return info == 0 ? reciprocal : 0.0;
+  }
+  if (static_cast<int>(inverse_transposed_.extent(0)) != n) {
+    inverse_transposed_ = MatrixView("kiln::rom::transposed inverse", n, n);
+  }
+  right_.resize(n);
+  inverse_transposed(inverse_transposed_);
+  double inverse_norm = 0.0;
+  for (int j = 0; j < n; ++j) {
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) sum += std::abs(inverse_transposed_(j, i));
+    inverse_norm = std::max(inverse_norm, sum);
+  }
+  return norm > 0.0 && std::isfinite(inverse_norm) ? 1.0 / (norm * inverse_norm) : n == 0 ? 1.0 : 0.0;
 }
 
 void LuFactors::solve(const VectorView& b) const {
+  const int n = static_cast<int>(factors_.extent(0));
+  if (inverse_transposed_.extent(0) == factors_.extent(0)) {
+    std::copy_n(b.data(), n, right_.data());
+    for (int k = 0; k < n; ++k) {
+      const double* const row = &inverse_transposed_(0, k);
+      double sum = 0.0;
+      for (int i = 0; i < n; ++i) sum += row[i] * right_[i];
+      b(k) = sum;
+    }
+    return;
+  }
   int info = 0;
-  Lapack().GETRS('N', static_cast<int>(factors_.extent(0)), 1, factors_.data(), leading_dimension(factors_),
-                 pivots_.data(), b.data(), static_cast<int>(factors_.extent(0)), &info);
+  Lapack().GETRS('N', n, 1, factors_.data(), leading_dimension(factors_), pivots_.data(), b.data(), n, &info);
 }
 
 void LuFactors::inverse_transposed(const MatrixView& result) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Loop.hpp"
 #include "framework/method/Divergence.hpp"
 
 namespace kiln {
@@ -17,8 +18,8 @@ const std::string residual_label = "kiln::rom::residual";
 void form_residual(const StepResidual& step, ConstVectorView u, ConstVectorView f, VectorView r) {
   const double alpha = step.alpha, gamma = step.gamma;
   const ConstVectorView history = step.history;
-  Kokkos::parallel_for(
-      residual_label, RangePolicy(0, static_cast<LocalIndex>(r.extent(0))),
+  loop(
+      residual_label, static_cast<LocalIndex>(r.extent(0)),
       KOKKOS_LAMBDA(const LocalIndex i) { r(i) = alpha * u(i) - gamma * f(i) + history(i); });
 }
 

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 
+#include "framework/base/Loop.hpp"
+
 namespace kiln {
 namespace {
 
-void add(double factor, const MatrixView& values, const MatrixView& sum) {
+// Labels made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string add_label = "kiln::rom::add to history of points";
+
+/// `first`: the sum is overwritten.
+void add(double factor, const MatrixView& values, bool first, const MatrixView& sum) {
   const double* from = values.data();
   double* to = sum.data();
-  Kokkos::parallel_for(
-      "kiln::rom::add to history of points", Kokkos::RangePolicy<ExecutionSpace>(0, sum.size()),
-      KOKKOS_LAMBDA(const std::size_t i) { to[i] += factor * from[i]; });
+  loop(
+      add_label, static_cast<LocalIndex>(sum.size()),
+      KOKKOS_LAMBDA(const LocalIndex i) { to[i] = (first ? 0.0 : to[i]) + factor * from[i]; });
 }
 
 }  // namespace
@@ -39,12 +45,11 @@ const MultistepCoefficients& PointHistory::scheme() const {
 }
 
 ConstMatrixView PointHistory::gather() {
-  Kokkos::deep_copy(history_, 0.0);
   const MultistepCoefficients& coefficients = scheme();
   for (std::size_t j = 1; j <= coefficients.steps(); ++j) {
     const Level& level = levels_[j - 1];
-    if (coefficients.alpha[j] != 0.0) add(coefficients.alpha[j], level.u, history_);
-    if (coefficients.beta[j] != 0.0) add(-step_ * coefficients.beta[j], level.f, history_);
+    if (j == 1 || coefficients.alpha[j] != 0.0) add(coefficients.alpha[j], level.u, j == 1, history_);
+    if (coefficients.beta[j] != 0.0) add(-step_ * coefficients.beta[j], level.f, false, history_);
   }
   return history_;
 }

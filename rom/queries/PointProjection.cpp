@@ -5,9 +5,16 @@
 #include <cmath>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Loop.hpp"
 #include "framework/method/Divergence.hpp"
 
 namespace kiln {
+namespace {
+
+// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string residuals_label = "kiln::rom::residuals of points";
+
+}  // namespace
 
 PointProjection::PointProjection(Projection& projection, const ParameterPoints& points)
     : projection_(projection),
@@ -89,9 +96,9 @@ void PointProjection::reduce_residual(const StepResidual& residual, double gamma
   const double* rate = f.data();
   const double* known = history.data();
   double* r = residual_.data();
-  Kokkos::parallel_for(
-      "kiln::rom::residuals of points", Kokkos::RangePolicy<ExecutionSpace>(0, residual_.size()),
-      KOKKOS_LAMBDA(const std::size_t i) { r[i] = alpha * u[i] - gamma * rate[i] + known[i]; });
+  loop(
+      residuals_label, static_cast<LocalIndex>(residual_.size()),
+      KOKKOS_LAMBDA(const LocalIndex i) { r[i] = alpha * u[i] - gamma * rate[i] + known[i]; });
   test_.multiply_transposed(residual_, g_);
   for (std::size_t point = 0; point < norms_.size(); ++point) {
     double sum = 0.0;

@@ -303,6 +303,7 @@ Teuchos::ParameterList input_of(const Case& values) {
       clustering.set("clusters", values.clusters).set("weights", values.cluster_weights);
     } else {
       clustering.set("opening", 0.5).set("leaf", 1);
+      if (values.clustering == "robust") clustering.set("smooth", 0.0).set("weights", "sums");
     }
   }
   reduction.sublist("snapshots").set("every", 1);

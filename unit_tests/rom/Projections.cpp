@@ -114,13 +114,13 @@ std::unique_ptr<Method> method_of(Case values, const std::string& type,
   return Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
 }
 
-std::vector<double> march(Method& method, const Case& values) {
+std::vector<double> march(Method& method, const Case& values, const std::vector<Observer*>& observers) {
   VectorView x("x", method.coordinates()->getMyGlobalIndices().extent(0));
   method.initial(x);
   const auto scheme = Registry<TimeScheme>::create(input_of(values).sublist("time").sublist("scheme"),
                                                    TimeScheme::Context{method, values.step});
   scheme->start(x, 0.0);
-  run_time_loop(method, *scheme, x, {values.step, 0, values.steps}, {});
+  run_time_loop(method, *scheme, x, {values.step, 0, values.steps}, observers);
   return gathered_state(method, x);
 }
 

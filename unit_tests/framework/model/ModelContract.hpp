@@ -266,6 +266,34 @@ inline std::vector<std::string> check_jacobian_against_finite_differences(const 
   return {compared.begin(), compared.end()};
 }
 
+/// A rate is that of its arguments, whatever was asked for before: the same state at another time, another state in the
+/// same array, a Jacobian.
+inline void check_rate_has_no_memory(const Model& model, double time = 0.1, double other_time = 0.2) {
+  const VectorView u = disturbed_state(model), other = disturbed_state(model), f("kiln::test::rate", row_size(model));
+  const VectorView array("kiln::test::array", source_size(model));
+  for (std::size_t i = 0; i < other.extent(0); ++i) other(i) *= 1.001;
+  const auto rate = [&](const VectorView& state, double at) {
+    Kokkos::deep_copy(array, state);
+    model.rate(array, at, f);
+    return std::vector<double>(f.data(), f.data() + f.extent(0));
+  };
+  const std::vector<double> here = rate(u, time), there = rate(other, other_time);
+  EXPECT_EQ(rate(u, time), here);
+  const std::vector<double> later = rate(u, other_time);
+  EXPECT_EQ(rate(other, other_time), there);
+  EXPECT_EQ(rate(u, other_time), later);
+  EXPECT_EQ(rate(u, time), here);
+  try {
+    const VectorView diagonal("kiln::test::diagonal", row_size(model));
+    model.rate_jacobian_diagonal(other, other_time, diagonal);
+    EXPECT_EQ(rate(u, time), here);
+    model.rate_jacobian_diagonal(u, time, diagonal);
+    EXPECT_EQ(rate(u, time), here);
+  } catch (const NotOffered&) {
+    // Then there is none to remember.
+  }
+}
+
 /// Parameters are named once, have a unit and a finite value, take new values and refuse bad ones; after each is set
 /// back the rate is bitwise what it was. Returns those whose change by 1 % changes the rate at a disturbed state and
 /// `time`, for the caller to compare with those that must.

@@ -42,10 +42,11 @@ Teuchos::ParameterList probe_list(const std::vector<std::pair<std::string, Point
   return list;
 }
 
-void run(Observer& observer, const StandInMethod& method, int first_step, int end_step) {
+/// `checkpoint`: a step after which one is written.
+void run(Observer& observer, const StandInMethod& method, int first_step, int end_step, int checkpoint = -1) {
   observer.begin();
   for (int step = first_step == 0 ? 0 : first_step + 1; step <= end_step; ++step) {
-    observer.observe({step, last_step, step * step_length, method.unknown(step), {}});
+    observer.observe({step, last_step, step * step_length, method.unknown(step), {}, step == checkpoint});
   }
 }
 
@@ -137,7 +138,7 @@ TEST(ProbeObserver, ARestartCutsLaterRowsAndContinues) {
   }
   {
     ProbeObserver observer(list, context_of(method, parts));
-    run(observer, method, 0, 5);
+    run(observer, method, 0, 5, 3);
   }
   world()->barrier();
   // A killed program may leave half a row.
@@ -293,7 +294,7 @@ TEST(Extremes, ARestartKeepsEarlierRows) {
   uninterrupted.finish(report_whole);
   {
     Extremes interrupted(list, context_of(method, parts));
-    run(interrupted, method, 0, 5);
+    run(interrupted, method, 0, 5, 3);
   }
   world()->barrier();
   Extremes continued(list, context_of(method, parts, 3));

@@ -3,6 +3,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <cstdio>
 
+#include "unit_tests/framework/model/ModelContract.hpp"
 #include "unit_tests/physics/sph/HeatCase.hpp"
 
 namespace kiln {
@@ -101,6 +102,13 @@ TEST(HeatModel, TakesANewParameterAtTheSameTime) {
     change += std::abs(f(i) - before(i));
   }
   EXPECT_GT(summed(change), 0.0);
+}
+
+TEST(HeatModel, RateHasNoMemory) {
+  const auto model = HeatCase().model();
+  contract::check_rate_has_no_memory(*model, 3e-4, 2e-4);
+  const auto sample = model->sampled({3, 100, 101, 400});
+  contract::check_rate_has_no_memory(*sample, 3e-4, 2e-4);
 }
 
 TEST(HeatModel, UniformTemperatureIsSteady) {

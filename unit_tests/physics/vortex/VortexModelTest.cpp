@@ -29,6 +29,7 @@ TEST(VortexModel, HoldsTheContractOfModels) {
     const auto model = with_kernel(kernel).model();
     ASSERT_GT(model->rows()->getGlobalNumElements(), 201u);
     contract::check_sampled(*model, some_rows);
+    contract::check_rate_has_no_memory(*model);
     const VectorView u = contract::disturbed_state(*model);
     EXPECT_EQ(contract::check_jacobian_against_finite_differences(*model, u, 0.0), (Names{"action", "diagonal"}));
     EXPECT_EQ(contract::check_parameters(*model), (Names{"kernel.core_radius", "circulation_scale"}));

@@ -67,8 +67,14 @@ struct Crossing {
 template <class Clustering>
 Clustering with(double opening, int leaf) {
   Teuchos::ParameterList list("reduction.clustering");
-  list.set("opening", opening).set("leaf", leaf);
+  list.set("opening", opening).set("leaf", leaf).set("smooth", 0.0).set("weights", "sums");
   return Clustering(list, NoContext{});
+}
+
+CertifiedClusters at_most(int clusters, double smooth) {
+  Teuchos::ParameterList list("reduction.clustering");
+  list.set("clusters", clusters).set("leaf", 1).set("smooth", smooth).set("weights", "sums");
+  return CertifiedClusters(list, NoContext{});
 }
 
 struct Cluster {
@@ -98,11 +104,11 @@ double mean(const Crossing& problem, const Cluster& cluster, std::size_t compone
   return sum;
 }
 
-/// The largest size/distance of any moment; of one member, 0.
-double largest_angle(const Crossing& problem, GlobalIndex row, const Cluster& cluster) {
+/// The largest size/√(distance² + smooth²) of any moment; of one member, 0.
+double largest_angle(const Crossing& problem, GlobalIndex row, const Cluster& cluster, double smooth = 0.0) {
   double largest = 0.0;
   for (std::size_t t = 0; t < problem.motion.states.extent(1); ++t) {
-    double size = 0.0, square = 0.0;
+    double size = 0.0, square = smooth * smooth;
     for (std::size_t d = 0; d < 2; ++d) {
       double low = 1e300, high = -1e300;
       for (const GlobalIndex id : cluster.members) {
@@ -194,6 +200,52 @@ TEST(CertifiedClusters, HoldTheirCriterionAtAllMoments) {
         EXPECT_LT(largest_angle(problem, clusters.rows[row], cluster), opening);
       }
     }
+  }
+}
+
+/// Distances count as at least `smooth`: clusters are larger there, and never beyond what that allows.
+TEST(CertifiedClusters, CountDistancesAsAtLeastSmooth) {
+  const Crossing problem;
+  Teuchos::ParameterList list("reduction.clustering");
+  list.set("opening", 0.5).set("leaf", 1).set("smooth", 1.0).set("weights", "sums");
+  const SourceClusters smooth = CertifiedClusters(list, NoContext{}).clusters(problem.pairs, problem.motion);
+  expect_partition(problem, smooth, true);
+  double plain = 0.0;
+  for (std::size_t row = 0; row < smooth.rows.size(); ++row) {
+    for (const Cluster& cluster : clusters_of_row(smooth, row)) {
+      EXPECT_LT(largest_angle(problem, smooth.rows[row], cluster, 1.0), 0.5);
+      plain = std::max(plain, largest_angle(problem, smooth.rows[row], cluster));
+    }
+  }
+  EXPECT_GT(plain, 0.5);
+  EXPECT_LT(smooth.row_clusters.size(),
+            with<CertifiedClusters>(0.5, 1).clusters(problem.pairs, problem.motion).row_clusters.size());
+}
+
+/// Each row fills its number as far as its next smaller opening allows, whatever that opening is.
+TEST(CertifiedClusters, KeepToAGivenNumber) {
+  const Crossing problem;
+  double last = 1e300;
+  for (const int most : {30, 50, 80}) {
+    const SourceClusters clusters = at_most(most, 0.0).clusters(problem.pairs, problem.motion);
+    expect_partition(problem, clusters, true);
+    for (std::size_t row = 0; row < clusters.rows.size(); ++row) {
+      const std::size_t found = clusters.row_offsets[row + 1] - clusters.row_offsets[row];
+      EXPECT_LE(found, static_cast<std::size_t>(most));
+      EXPECT_GT(found, static_cast<std::size_t>(most) / 2);
+    }
+    const double now = error(problem, clusters);
+    EXPECT_LT(now, last);
+    last = now;
+  }
+  const SourceClusters all = at_most(count, 0.0).clusters(problem.pairs, problem.motion);
+  EXPECT_EQ(widest(all), 1u);
+  try {
+    at_most(3, 0.0).clusters(problem.pairs, problem.motion);
+    FAIL() << "three clusters are enough";
+  } catch (const InputError& refusal) {
+    const std::string text = refusal.what();
+    EXPECT_EQ(text.rfind("reduction.clustering.clusters: 3 are too few: row ", 0), 0u) << text;
   }
 }
 

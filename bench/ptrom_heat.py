@@ -1,0 +1,44 @@
+"""PTROM of SPH heat against GNAT, both from one reduction file: the four experiments, in windows and with one basis."""
+
+import sys
+
+from kiln_case import KilnCase, global_setting
+from summary import compare_runs
+
+
+def compared(case, full, reduction):
+    found = {}
+    for method in ("gnat", "ptrom"):
+        run, wall, cpu = case.online(reduction, method)
+        comparison = compare_runs(full, run, reduction)
+        found[method] = {
+            "online_s": wall,
+            "online_cpu_s": cpu,
+            "speedup_wall": full.report["time"]["loop_wall_s"] / wall,
+            "speedup_cpu": full.report["time"]["loop_cpu_s"] / cpu,
+            "worst_probe_error_percent": comparison["worst_probe_error_percent"],
+            "field_l2_error_percent": comparison["field_l2_error_percent"],
+        }
+    gnat, ptrom, method = found["gnat"], found["ptrom"], run.report["method"]
+    return {
+        **found,
+        "sources_ratio": method["sources_ratio"],
+        "distinct_sources_ratio": method["sources"] / method["gnat_sources"],
+        "time_ratio": gnat["online_s"] / ptrom["online_s"],
+        "cpu_time_ratio": gnat["online_cpu_s"] / ptrom["online_cpu_s"],
+        "error_ratio": ptrom["worst_probe_error_percent"] / gnat["worst_probe_error_percent"],
+        "field_error_ratio": ptrom["field_l2_error_percent"] / gnat["field_l2_error_percent"],
+    }
+
+
+def results(bench):
+    found = {}
+    for number in (1, 2, 3, 4):
+        case = KilnCase(bench, bench.inputs / f"nrl-2022/experiment-{number}.yaml",
+                        bench.folder / f"ptrom/heat-{number}")
+        full = case.full_order()
+        for name, changes in ((f"experiment_{number}", []), (f"global.experiment_{number}", global_setting(number))):
+            print(f"bench: ptrom: heat, {name}", file=sys.stderr)
+            reduction, _ = case.train(name, *changes)
+            found[name] = compared(case, full, reduction)
+    return found

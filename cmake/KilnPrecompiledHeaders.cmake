@@ -1,0 +1,21 @@
+# kiln_precompile(TARGET [FROM OTHER]): headers of other libraries that most sources read, read once. FROM: those of a target
+# with the same options. Sources include what they use all the same; the target self-contained headers goes without.
+option(KILN_PRECOMPILED_HEADERS "Read other libraries' headers once" ON)
+
+function(kiln_precompile target)
+  cmake_parse_arguments(HEADERS "" "FROM" "" ${ARGN})
+  if(NOT KILN_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  # What ccache needs to tell such a header's contents.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  if(HEADERS_FROM)
+    target_precompile_headers(${target} REUSE_FROM ${HEADERS_FROM})
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE
+    <Kokkos_Core.hpp> <Teuchos_Comm.hpp> <Teuchos_CommHelpers.hpp> <Teuchos_ParameterList.hpp> <Teuchos_RCP.hpp>
+    <Tpetra_CrsMatrix_decl.hpp> <Tpetra_Import_decl.hpp> <Tpetra_Map.hpp> <Tpetra_MultiVector_decl.hpp>
+    <Tpetra_Operator.hpp> <Tpetra_Vector_decl.hpp> <fmt/format.h> <nlohmann/json.hpp>
+    <algorithm> <cmath> <filesystem> <functional> <map> <memory> <string> <vector>)
+endfunction()

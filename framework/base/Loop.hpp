@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+
+#include "framework/base/LinearAlgebra.hpp"
+
+namespace kiln {
+
+/// Calls body(i) for i = 0 … count − 1 in parallel: Kokkos::parallel_for for loops that may be as short as a sample
+/// mesh. On the serial execution space a dispatch (locks, copies, hooks of tools) costs as much as some hundred pairs;
+/// there the loop runs right here, unless a Kokkos tool is loaded, which then sees every kernel under its label.
+template <class Body>
+void loop(const std::string& label, LocalIndex count, const Body& body) {
+#ifdef KOKKOS_ENABLE_SERIAL
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>) {
+    // Tools are loaded when Kokkos starts, and stay.
+    static const bool heard = Kokkos::Tools::profileLibraryLoaded();
+    if (!heard) {
+      for (LocalIndex i = 0; i < count; ++i) body(i);
+      return;
+    }
+  }
+#endif
+  Kokkos::parallel_for(label, RangePolicy(0, count), body);
+}
+
+/// Whether a(i) == b(i) everywhere; of equal lengths.
+inline bool same_values(const ConstVectorView& a, const ConstVectorView& b) {
+#ifdef KOKKOS_ENABLE_SERIAL
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>) {
+    return std::equal(a.data(), a.data() + a.extent(0), b.data());
+  }
+#endif
+  LocalIndex different = 0;
+  Kokkos::parallel_reduce(
+      "kiln::same values", RangePolicy(0, static_cast<LocalIndex>(a.extent(0))),
+      KOKKOS_LAMBDA(const LocalIndex i, LocalIndex& count) { count += a(i) == b(i) ? 0 : 1; }, different);
+  return different == 0;
+}
+
+/// to(i) = from(i), of equal lengths. Unlike Kokkos::deep_copy it waits for nothing.
+inline void copy_values(const ConstVectorView& from, const VectorView& to) {
+  static const std::string label = "kiln::copy values";
+  loop(
+      label, static_cast<LocalIndex>(to.extent(0)), KOKKOS_LAMBDA(const LocalIndex i) { to(i) = from(i); });
+}
+
+}  // namespace kiln
