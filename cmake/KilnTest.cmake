@@ -5,15 +5,23 @@ set(KILN_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM
     OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
     OPENBLAS_NUM_THREADS=1)
 
-add_library(kiln_test_main OBJECT ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
-target_link_libraries(kiln_test_main PRIVATE kiln_library GTest::gtest)
-kiln_precompile(kiln_test_main)
+# Objects of executables, compiled as those themselves are, or they could not share precompiled headers.
+function(kiln_test_objects name)
+  add_library(${name} OBJECT ${ARGN})
+  target_link_libraries(${name} PRIVATE kiln_library GTest::gtest)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(${name} PRIVATE -fPIE)
+endfunction()
+
+if(NOT TARGET kiln_test_main)
+  kiln_test_objects(kiln_test_main ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
+  kiln_precompile(kiln_test_main)
+endif()
 
 # kiln_test_cases(name a.cpp …): sources that several tests share, compiled once. A test takes them as a source:
 # $<TARGET_OBJECTS:name>.
 function(kiln_test_cases name)
-  add_library(${name} OBJECT ${ARGN})
-  target_link_libraries(${name} PRIVATE kiln_library GTest::gtest)
+  kiln_test_objects(${name} ${ARGN})
   kiln_precompile(${name} FROM kiln_test_main)
 endfunction()
 
