@@ -85,7 +85,7 @@ def step_error(bench, particles=3000):
     """What the time step costs the full-order run itself: against half the step."""
     case = two_vortices(bench, "vortex-step", particles)
     full = case.full_order()
-    half = case.full_order("half", "time.step=0.01 s", "output.fields.every=40")
+    half = case.full_order("half", "time.step=0.01 s", "output.fields.every=100")
     return vortex_errors.position_error(half, full)
 
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -155,6 +156,7 @@ void RunFile::reopen(int first_step) {
       written_.push_back({frame, times[frame]});
     }
   }
+  xdmf_interval_ = ExchangeInterval(static_cast<int>(written_.size()));
   const std::size_t count = root_count() * frames;
   times.resize(count);
   steps.resize(count);
@@ -189,12 +191,20 @@ void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x)
   file_.write_block("step", {frame}, {count}, std::vector<long long>(count, step));
   file_.write_block("time", {frame}, {count}, std::vector<double>(count, time));
   written_.push_back({frame, time});
-  if (written_.size() >= next_xdmf_ || frame + 1 == contents_.steps.size()) write_xdmf();
+  const auto number = static_cast<int>(written_.size());
+  // Until the second frame nothing tells the frames' pace.
+  if (number == 1) xdmf_interval_ = ExchangeInterval(1);
+  if (number == 1 || frame + 1 == contents_.steps.size()) return write_xdmf();
+  if (!xdmf_interval_.due(number)) return;
+  write_xdmf();
+  // Its length grows with the frames: writing it after each of very many would take longer than the frames.
+  const int mine = std::max(xdmf_interval_.steps_to_come(number), 1 + number / 16);
+  int least = mine;
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MIN, 1, &mine, &least);
+  xdmf_interval_.exchanged(number, least);
 }
 
 void RunFile::write_xdmf() {
-  // Its length grows with the frames: writing it after each of very many would take longer than the frames.
-  next_xdmf_ = written_.size() + 1 + written_.size() / 16;
   write_atomically(folder_ / "run.xdmf", xdmf("run.h5", order_.rows(), contents_.fields, written_), communicator_,
                    false);
 }

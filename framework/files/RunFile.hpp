@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/ExchangeInterval.hpp"
 #include "framework/base/LinearAlgebra.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/RowOrder.hpp"
@@ -62,7 +63,7 @@ class RunFile {
   RowOrder order_;
   hdf5::File file_;
   std::vector<XdmfFrame> written_;
-  std::size_t next_xdmf_ = 0;  ///< frames written when the XDMF file is due again
+  ExchangeInterval xdmf_interval_;  ///< of frames, between two versions of run.xdmf
 };
 
 }  // namespace kiln

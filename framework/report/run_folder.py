@@ -33,13 +33,17 @@ class RunFolder:
 
 
 def reconstruct(reduction_file, coordinates):
-    """State of every particle from reduced coordinates, u_ref + Σ_w Φ_w û_w over the time windows, frame by frame."""
+    """State of every particle from reduced coordinates, u_ref + Σ_w Φ_w û_w over the time windows, frame by frame: a row a
+    frame, particle by particle and in each component by component."""
     with h5py.File(reduction_file) as reduction:
+        components = int(reduction.attrs["components"])
         state = np.repeat(reduction["reference"][:].reshape(1, -1), len(coordinates), axis=0)
         windows = reduction["windows"]
         first = 0
         for window in sorted(windows, key=int):
-            modes = windows[window]["basis/modes"][:]
+            # A particle's row holds mode after mode, in each its components.
+            folded = windows[window]["basis/modes"][:]
+            modes = folded.reshape(len(folded), -1, components).transpose(0, 2, 1).reshape(components * len(folded), -1)
             state += coordinates[:, first : first + modes.shape[1]] @ modes.T
             first += modes.shape[1]
         return state
