@@ -46,12 +46,21 @@ class KilnCase:
 
     def online(self, reduction, method="gnat", *changes):
         """The last of several runs, and the middle one's wall and CPU time in s."""
-        times = []
+        return self.online_in_turn([(self, reduction)], method, *changes)[0]
+
+    @staticmethod
+    def online_in_turn(cases, method, *changes):
+        """Of each pair of case and reduction file what online() tells. They run in turn, so that a machine that is slower
+        for a while is so for all."""
+        times = [[] for _ in cases]
+        runs = [None for _ in cases]
         for _ in range(ONLINE_RUNS):
-            words = (f"method.type={method}", f"method.file={reduction}", *changes)
-            run = RunFolder(self.kiln("run", "online", *words) / method)
-            times.append((run.report["time"]["loop_wall_s"], run.report["time"]["loop_cpu_s"]))
-        return run, statistics.median(wall for wall, _ in times), statistics.median(cpu for _, cpu in times)
+            for number, (case, reduction) in enumerate(cases):
+                words = (f"method.type={method}", f"method.file={reduction}", *changes)
+                runs[number] = run = RunFolder(case.kiln("run", f"online-{number}", *words) / method)
+                times[number].append((run.report["time"]["loop_wall_s"], run.report["time"]["loop_cpu_s"]))
+        return [(run, statistics.median(wall for wall, _ in each), statistics.median(cpu for _, cpu in each))
+                for run, each in zip(runs, times)]
 
 
 def figure(name, values, unit=""):

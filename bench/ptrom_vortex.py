@@ -21,8 +21,8 @@ def two_vortices(bench, name, particles, *changes):
                     [f"model.particles.count={particles}", *changes])
 
 
-def measured(case, full, reduction):
-    run, wall, cpu = case.online(reduction, "ptrom")
+def measured(full, reduction, online):
+    run, wall, cpu = online
     method = run.report["method"]
     return {
         "full_order_s": full.report["time"]["loop_wall_s"],
@@ -40,13 +40,17 @@ def measured(case, full, reduction):
 
 def scale(bench):
     """A list over N, and the largest case, for what else is measured on it."""
-    rows = []
+    cases, fulls, trainings = [], [], []
     for particles in SIZES:
         print(f"bench: ptrom: {particles} vortices", file=sys.stderr)
         case = two_vortices(bench, f"vortex-{particles}", particles)
-        full = case.full_order()
+        fulls.append(case.full_order())
         reduction, training = case.train("training")
-        row = {"particles": full.report["method"]["particles"], **measured(case, full, reduction)}
+        cases.append((case, reduction))
+        trainings.append(training)
+    rows = []
+    for (_, reduction), full, training, online in zip(cases, fulls, trainings, KilnCase.online_in_turn(cases, "ptrom")):
+        row = {"particles": full.report["method"]["particles"], **measured(full, reduction, online)}
         row["training_in_full_order_runs"] = training / row["full_order_s"]
         row["median_spacings_moved"], row["most_spacings_moved"] = vortex_errors.spacings_moved(full)
         rows.append(row)
@@ -56,11 +60,14 @@ def scale(bench):
 def over_clusters(bench, particles=10000):
     case = two_vortices(bench, "vortex-clusters", particles)
     full = case.full_order()
-    rows = []
+    reductions = []
     for clusters in CLUSTERS:
         print(f"bench: ptrom: {clusters} clusters a row", file=sys.stderr)
-        reduction, _ = case.train(f"clusters-{clusters}", f"reduction.clustering.clusters={clusters}")
-        rows.append({"clusters": clusters, **measured(case, full, reduction)})
+        reductions.append(case.train(f"clusters-{clusters}", f"reduction.clustering.clusters={clusters}")[0])
+    online = KilnCase.online_in_turn([(case, reduction) for reduction in reductions], "ptrom")
+    rows = [{"clusters": clusters, **measured(full, reduction, each)}
+            for clusters, reduction, each in zip(CLUSTERS, reductions, online)]
+    reduction = reductions[-1]
     gnat, wall, _ = case.online(reduction, "gnat")
     found = vortex_errors.errors(full, gnat, reduction, CORE_RADIUS)
     return {"particles": particles, "clusters": rows,
@@ -68,7 +75,8 @@ def over_clusters(bench, particles=10000):
 
 
 def against_barnes_hut(case, full, row):
-    """Barnes and Hut's sum in the full model, with the widest opening whose positions err no more than PTROM's do."""
+    """Barnes and Hut's sum in the full model, opened ever narrower until its positions err no more than PTROM's do; if none
+    does, `same_error` is false and the ratio a bound from below."""
     tried = []
     for opening in BARNES_HUT_OPENINGS:
         print(f"bench: ptrom: Barnes-Hut, opening {opening}", file=sys.stderr)
