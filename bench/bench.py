@@ -110,21 +110,29 @@ def table(machine, figures):
               f"{figure['runs']:4} {figure['unit']}")
 
 
-def main():
-    sections = load_sections()
-    options = arguments(sections)
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    bench = Bench(options)
-    new = []
-    for name in options.sections:
-        print(f"bench: {name}: {sections[name].__doc__.strip()}", file=sys.stderr)
-        new += sections[name].figures(bench)
-    path = FOLDER / "bench.json"
+def keep(bench, path, new):
+    """Puts new figures in the place of those of the same names."""
     names = {figure["name"] for figure in new}
     old = json.loads(path.read_text()) if path.exists() else {"machine": {}, "figures": []}
     kept = [figure for figure in old["figures"] if figure["name"] not in names]
     machine = bench.machine or old["machine"]
     path.write_text(json.dumps({"machine": machine, "figures": kept + new}, indent=1) + "\n")
+    return machine
+
+
+def main():
+    sections = load_sections()
+    options = arguments(sections)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    bench = Bench(options)
+    path = FOLDER / "bench.json"
+    new = []
+    for name in options.sections:
+        print(f"bench: {name}: {sections[name].__doc__.strip()}", file=sys.stderr)
+        found = sections[name].figures(bench)
+        # Sections take minutes: what is measured stays, whatever happens to the next.
+        machine = keep(bench, path, found)
+        new += found
     table(machine, new)
     print(f"\nall figures: {path.relative_to(ROOT)}")
 

@@ -120,21 +120,30 @@ class KillTest(FaultTest):
 
     def test_at_random_moments(self):
         undisturbed = self.undisturbed()
-        begin = time.monotonic()
-        self.solve("run", *CASE, into="timed")
-        whole = time.monotonic() - begin
+        whole = float("inf")
+        for _ in range(2):
+            begin = time.monotonic()
+            self.solve("run", *CASE, into="timed")
+            whole = min(whole, time.monotonic() - begin)
         chance = random.Random(SEED)
         killed = 0
-        for k in range(KILLS):
+        # The machine may be faster by the time of a kill: a run that has ended is none, and another one is taken.
+        for k in range(8 * KILLS):
             into = f"killed-{k}"
             with self.subTest(kill=k):
                 process = self.start(into=into)
                 time.sleep(whole * chance.uniform(0.02, 0.98))
                 process.kill()
-                killed += process.wait() == -signal.SIGKILL
+                was_killed = process.wait() == -signal.SIGKILL
                 process.communicate()
+                if not was_killed:
+                    shutil.rmtree(self.folder / into)
+                    continue
                 self.survive(undisturbed, into)
-        self.assertGreater(killed, KILLS // 2, "most runs ended before they could be killed")
+                killed += 1
+                if killed == KILLS:
+                    return
+        self.fail(f"{killed} of {KILLS} runs could be killed before they ended")
 
     def test_while_a_checkpoint_is_written(self):
         undisturbed = self.undisturbed()
