@@ -46,6 +46,8 @@ class RunFile {
   /// Writes the frame of `step`, one of Contents::steps. u: particles × components; x: the method's unknown, looked at
   /// where Contents::coordinates is not 0. Collective.
   void write(int step, double time, ConstVectorView u, ConstVectorView x = {});
+  /// run.xdmf lists all frames so far: written about four times a second at most, it may lag behind. Collective.
+  void write_xdmf();
 
   std::size_t frames_written() const { return written_.size(); }
   std::string path() const { return (folder_ / "run.h5").string(); }
@@ -54,7 +56,6 @@ class RunFile {
   void create(ConstPositionView positions);
   void create_vtkhdf();
   void reopen(int first_step);
-  void write_xdmf();
   std::size_t root_count() const { return communicator_->getRank() == 0 ? 1 : 0; }
 
   std::filesystem::path folder_;

@@ -65,12 +65,15 @@ void FieldObserver::begin() {
 }
 
 void FieldObserver::observe(const Moment& moment) {
-  if (!std::binary_search(steps_.begin(), steps_.end(), moment.step)) return;
-  context_.method.state(moment.x, u_);
-  file_->write(moment.step, moment.time, u_, moment.x);
+  if (std::binary_search(steps_.begin(), steps_.end(), moment.step)) {
+    context_.method.state(moment.x, u_);
+    file_->write(moment.step, moment.time, u_, moment.x);
+  }
+  if (moment.checkpoint) file_->write_xdmf();
 }
 
 void FieldObserver::finish(RunReport& report) {
+  file_->write_xdmf();
   report.section("fields") = {{"file", "run.h5"},
                               {"frames", file_->frames_written()},
                               {"particles", context_.method.particles()->getGlobalNumElements()}};

@@ -88,6 +88,7 @@ TEST(RunFile, LeavesFilesForTheReaders) {
   const SampleRun run;
   RunFile file = run.open(folder, 0);
   for (const int step : {0, 2, 4}) run.write(file, step);
+  file.write_xdmf();
   EXPECT_EQ(file.frames_written(), 3u);
 }
 

@@ -25,8 +25,8 @@ TEST(Dense, AffineIsThePlainSum) {
   for (const std::size_t rows : {0, 1, 7, 8, 9, 31, 32, 41, 100, 5000}) {
     for (const std::size_t columns : {0, 1, 10}) {
       const MatrixView whole = random_matrix(rows + 3, columns + 2, 3);
-      const ConstMatrixView a = Kokkos::subview(whole, std::make_pair(std::size_t(2), rows + 2),
-                                                std::make_pair(std::size_t(1), columns + 1));
+      const ConstMatrixView a =
+          Kokkos::subview(whole, std::make_pair(std::size_t(2), rows + 2), std::make_pair(std::size_t(1), columns + 1));
       const VectorView b = column_of(random_matrix(rows, 1, 5), 0), x = column_of(random_matrix(columns, 1, 7), 0);
       const VectorView y("y", rows);
       affine(b, a, x, y);
