@@ -24,7 +24,7 @@ COMPONENTS = {
     "observer": ["extremes", "fields", "probes"],
     "particles": ["file", "lattice"],
     "sampling": ["greedy"],
-    "source clustering": ["paper", "per row", "robust"],
+    "source clustering": ["among samples", "paper", "per row", "robust"],
     "time scheme": [
         "backward euler", "bdf2", "explicit euler", "heun", "linear multistep", "rk4", "ssp rk3", "trapezoidal",
     ],

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -32,6 +33,14 @@ struct SourceClusters {
   std::vector<double> shares;               ///< a_m of each member
 
   std::size_t clusters() const { return member_offsets.size() - 1; }
+  /// What a cluster is called among the sources of a clustered model of N particles: the id of a row where that is its
+  /// only member, N + its number otherwise.
+  GlobalIndex source_id(std::size_t cluster, GlobalIndex particles) const {
+    const std::size_t first = member_offsets[cluster];
+    const bool is_row =
+        member_offsets[cluster + 1] == first + 1 && std::binary_search(rows.begin(), rows.end(), members[first]);
+    return is_row ? members[first] : particles + static_cast<GlobalIndex>(cluster);
+  }
 };
 
 /// Offered beside Model by physics whose rate is a sum over pairs of particles and a term of the row's own,
@@ -49,9 +58,9 @@ class PairwiseModel {
   virtual PairWeights pair_weights(const std::vector<GlobalIndex>& rows) const = 0;
 
   /// The same physics at clusters.rows, each summed over its clusters. As Model::sampled, with these sources: the rows
-  /// of a rank, ascending, then the clusters that they use, cluster c with the id N + c, N one more than the largest id
-  /// of the model's rows. With clusters of one member each it is the sampled model, to round-off. Its save_sample
-  /// writes what the model is rebuilt from as from a sample. Collective.
+  /// of a rank, ascending, then what else they use, ascending by SourceClusters::source_id with N one more than the
+  /// largest id of the model's rows. With clusters of one member each it is the sampled model, to round-off. Its
+  /// save_sample writes what the model is rebuilt from as from a sample. Collective.
   virtual std::unique_ptr<Model> clustered(const SourceClusters& clusters) const = 0;
 };
 

@@ -89,15 +89,7 @@ std::unique_ptr<PairLayout> compressed_rows(const HeatDomain& domain) {
 
 std::unique_ptr<PairLayout> pair_layout(const HeatDomain& domain) {
   if (auto lattice = lattice_sweep(domain)) return lattice;
-  // A sample mesh has few pairs between its own rows; listing those once would save nothing.
-  const auto rows = static_cast<LocalIndex>(domain.areas.extent(0));
-  const ConstIndexView neighbours = domain.pairs.neighbours;
-  std::size_t own = 0;
-  Kokkos::parallel_reduce(
-      "kiln::sph::count pairs of rows", Kokkos::RangePolicy<ExecutionSpace>(0, neighbours.extent(0)),
-      KOKKOS_LAMBDA(std::size_t pair, std::size_t & count) { count += neighbours(pair) < rows ? 1 : 0; }, own);
-  const bool mostly_own = 2 * own > neighbours.extent(0);
-  return mostly_own && ExecutionSpace().concurrency() == 1 ? half_list(domain) : compressed_rows(domain);
+  return domain.mutual && ExecutionSpace().concurrency() == 1 ? half_list(domain) : compressed_rows(domain);
 }
 
 }  // namespace kiln

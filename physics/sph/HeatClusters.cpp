@@ -3,6 +3,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "framework/base/Error.hpp"
 #include "physics/sph/DomainParts.hpp"
@@ -51,15 +52,16 @@ class Members {
   std::vector<double> values_;    ///< x, y, z and mass of each
 };
 
-/// The numbers of the clusters that some rows, given by their places among clusters.rows, use: ascending, once each.
-std::vector<std::size_t> used_clusters(const SourceClusters& clusters, const std::vector<std::size_t>& rows) {
-  std::vector<std::size_t> used;
+/// The clusters that some rows, given by their places among clusters.rows, use, by their ids as sources.
+std::map<GlobalIndex, std::size_t> used_clusters(const SourceClusters& clusters, const std::vector<std::size_t>& rows,
+                                                 GlobalIndex particles) {
+  std::map<GlobalIndex, std::size_t> used;
   for (const std::size_t row : rows) {
-    used.insert(used.end(), clusters.row_clusters.begin() + static_cast<std::ptrdiff_t>(clusters.row_offsets[row]),
-                clusters.row_clusters.begin() + static_cast<std::ptrdiff_t>(clusters.row_offsets[row + 1]));
+    for (std::size_t pair = clusters.row_offsets[row]; pair < clusters.row_offsets[row + 1]; ++pair) {
+      const std::size_t cluster = clusters.row_clusters[pair];
+      used.emplace(clusters.source_id(cluster, particles), cluster);
+    }
   }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
   return used;
 }
 
@@ -68,7 +70,7 @@ std::vector<std::size_t> used_clusters(const SourceClusters& clusters, const std
 HeatDomain clustered_domain(const HeatDomain& domain, const SourceClusters& clusters) {
   const HeatDomain sample = sampled_domain(domain, clusters.rows);
   const HostDomain local(sample);
-  const GlobalIndex first_id = domain.rows->getMaxAllGlobalIndex() + 1;
+  const GlobalIndex particles = domain.rows->getMaxAllGlobalIndex() + 1;
   DomainParts parts;
   parts.rows = parts.sources = local.rows;
   std::vector<std::size_t> rows;
@@ -79,23 +81,24 @@ HeatDomain clustered_domain(const HeatDomain& domain, const SourceClusters& clus
     parts.masses.push_back(local.masses(i));
     parts.areas.push_back(local.areas(i));
   }
-  const std::vector<std::size_t> used = used_clusters(clusters, rows);
   const Members members(domain, clusters.members);
-  for (const std::size_t cluster : used) {
+  std::map<GlobalIndex, LocalIndex> places;
+  for (std::size_t i = 0; i < parts.rows.size(); ++i) places[parts.rows[i]] = static_cast<LocalIndex>(i);
+  for (const auto& [id, cluster] : used_clusters(clusters, rows, particles)) {
+    if (!places.emplace(id, static_cast<LocalIndex>(parts.sources.size())).second) continue;
     Point position{};
     double mass = 0.0;
     for (std::size_t m = clusters.member_offsets[cluster]; m < clusters.member_offsets[cluster + 1]; ++m) {
       members.add(clusters.members[m], clusters.shares[m], position, mass);
     }
-    parts.sources.push_back(first_id + static_cast<GlobalIndex>(cluster));
+    parts.sources.push_back(id);
     parts.positions.push_back(position);
     parts.masses.push_back(mass);
   }
   for (const std::size_t row : rows) {
     for (std::size_t pair = clusters.row_offsets[row]; pair < clusters.row_offsets[row + 1]; ++pair) {
-      const auto place = std::lower_bound(used.begin(), used.end(), clusters.row_clusters[pair]);
-      const std::size_t source = parts.rows.size() + static_cast<std::size_t>(place - used.begin());
-      parts.neighbours.push_back(static_cast<LocalIndex>(source));
+      const LocalIndex source = places.at(clusters.source_id(clusters.row_clusters[pair], particles));
+      parts.neighbours.push_back(source);
       parts.weights.push_back(clusters.row_weights[pair] / parts.masses[source]);
     }
     parts.offsets.push_back(parts.neighbours.size());

@@ -196,6 +196,7 @@ HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings
   check_pairs(cloud, around, candidate_positions, targets, pairs, settings, *communicator);
 
   HeatDomain domain;
+  domain.mutual = true;
   const std::optional<Box> mirrors = settings.mirrored ? cloud.faces : std::nullopt;
   domain.weights = pair_weights(pairs, candidate_positions, targets, settings.kernel, settings.support, mirrors);
   domain.stencil = lattice_stencil(cloud.positions, settings.kernel, settings.support, mirrors);

@@ -28,6 +28,8 @@ struct HeatDomain {
   VectorView areas;                 ///< A_i in m² of the rows
   NeighbourList pairs;              ///< of the rows, as local indices into the sources
   VectorView weights;               ///< of the pairs, (dW/dr)/r in 1/m⁵
+  /// Whether of any two rows each lists the other, with one weight. Not so for rows with sources of their own choice.
+  bool mutual = false;
   /// When the whole part stands on a lattice; a sample mesh has none.
   std::optional<LatticeStencil> stencil;
 };

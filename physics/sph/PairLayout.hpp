@@ -28,8 +28,8 @@ std::unique_ptr<PairLayout> pair_layout(const HeatDomain& domain);
 /// Each row's neighbours and weights one after the other: for any particles, any rows, and any execution space.
 std::unique_ptr<PairLayout> compressed_rows(const HeatDomain& domain);
 
-/// Each pair of two rows once, for both of them: half of the memory to read. Where rows are summed one after the other
-/// only (one thread of a host).
+/// Each pair of two rows once, for both of them: half of the memory to read. For domains whose pairs are mutual, and
+/// where rows are summed one after the other only (one thread of a host).
 std::unique_ptr<PairLayout> half_list(const HeatDomain& domain);
 
 /// One stencil for all rows, when the domain's particles stand on a lattice: no neighbours and no weights are read.

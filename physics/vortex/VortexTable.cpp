@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "framework/base/Error.hpp"
@@ -103,40 +104,41 @@ VortexTable clustered_table(const VortexTable& table, const SourceClusters& clus
   result.particles = table.particles;
   result.rows = checked_rows(table, clusters.rows);
 
-  std::vector<std::size_t> used(clusters.row_clusters);
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::map<GlobalIndex, std::size_t> used;
+  for (const std::size_t cluster : clusters.row_clusters) {
+    used.emplace(clusters.source_id(cluster, table.particles), cluster);
+  }
   for (const GlobalIndex id : result.rows) {
     const std::size_t place = table.source(id);
     result.sources.push_back(id);
     result.x.push_back(table.x[place]);
     result.y.push_back(table.y[place]);
   }
-  for (const std::size_t cluster : used) {
+  for (const auto& [id, cluster] : used) {
+    if (std::binary_search(result.rows.begin(), result.rows.end(), id)) continue;
     double x = 0.0, y = 0.0;
     for (std::size_t m = clusters.member_offsets[cluster]; m < clusters.member_offsets[cluster + 1]; ++m) {
       const std::size_t place = table.source(clusters.members[m]);
       x += clusters.shares[m] * table.x[place];
       y += clusters.shares[m] * table.y[place];
     }
-    result.sources.push_back(table.particles + static_cast<GlobalIndex>(cluster));
+    result.sources.push_back(id);
     result.x.push_back(x);
     result.y.push_back(y);
   }
 
   result.offsets.push_back(0);
-  std::vector<std::size_t> order;
+  std::vector<std::pair<GlobalIndex, double>> list;
   for (std::size_t r = 0; r < result.rows.size(); ++r) {
-    order.resize(clusters.row_offsets[r + 1] - clusters.row_offsets[r]);
-    std::iota(order.begin(), order.end(), clusters.row_offsets[r]);
+    list.clear();
+    for (std::size_t pair = clusters.row_offsets[r]; pair < clusters.row_offsets[r + 1]; ++pair) {
+      list.emplace_back(clusters.source_id(clusters.row_clusters[pair], table.particles), clusters.row_weights[pair]);
+    }
     // Neighbours in memory are read together.
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return clusters.row_clusters[a] != clusters.row_clusters[b] ? clusters.row_clusters[a] < clusters.row_clusters[b]
-                                                                  : a < b;
-    });
-    for (const std::size_t pair : order) {
-      result.listed.push_back(table.particles + static_cast<GlobalIndex>(clusters.row_clusters[pair]));
-      result.listed_circulations.push_back(clusters.row_weights[pair]);
+    std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [id, circulation] : list) {
+      result.listed.push_back(id);
+      result.listed_circulations.push_back(circulation);
     }
     result.offsets.push_back(result.listed.size());
   }

@@ -20,7 +20,9 @@ class CertifiedClusters : public SourceClustering {
   CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
-  bool weights_are_fitted() const override { return fitted_; }
+  std::optional<WeightFit> weight_fit() const override {
+    return fitted_ ? std::optional(WeightFit::near_sums()) : std::nullopt;
+  }
 
  private:
   std::string path_;

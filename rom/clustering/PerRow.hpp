@@ -15,7 +15,9 @@ class PerRow : public SourceClustering {
   PerRow(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
-  bool weights_are_fitted() const override { return fitted_; }
+  std::optional<WeightFit> weight_fit() const override {
+    return fitted_ ? std::optional(WeightFit::near_sums()) : std::nullopt;
+  }
 
  private:
   std::size_t most_;  ///< clusters of a row

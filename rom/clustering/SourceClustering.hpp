@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/model/PairwiseModel.hpp"
@@ -21,6 +22,15 @@ struct SourceMotion {
   std::size_t place(GlobalIndex id) const;
 };
 
+/// How fit_weights() changes the weights that clusters come with.
+struct WeightFit {
+  double ridge;          ///< how strongly weights hold to what they are drawn to, relative to what clusters bring
+  std::size_t most = 0;  ///< clusters that a row keeps, chosen one after the other; 0: all
+
+  /// Near the sums of their members' weights, such that rates come out right in the mean.
+  static WeightFit near_sums() { return {0.1}; }
+};
+
 /// Gathers the many sources of each sampled row into few weighted ones (PTROM, Appendix A of NRL/6390/MR--2022/1).
 /// Knows no physics: what pairs weigh and how particles move is all there is.
 class SourceClustering {
@@ -32,8 +42,8 @@ class SourceClustering {
   /// Clusters for pairs.rows; those of a row ascend. Does not depend on the order of round-off by which the arguments
   /// of different numbers of ranks differ. Throws InputError for pairs it does not serve.
   virtual SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const = 0;
-  /// Whether training is to fit row_weights to the rates that it has met (fit_weights()).
-  virtual bool weights_are_fitted() const = 0;
+  /// How training is to fit row_weights to the rates that it has met; nothing: not at all.
+  virtual std::optional<WeightFit> weight_fit() const = 0;
 };
 
 }  // namespace kiln

@@ -21,7 +21,7 @@ class SuperposedModes : public SourceClustering {
   SuperposedModes(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
-  bool weights_are_fitted() const override { return false; }
+  std::optional<WeightFit> weight_fit() const override { return std::nullopt; }
 
  private:
   std::string path_;

@@ -1,6 +1,7 @@
 #include "rom/files/ClusteredMesh.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "framework/base/Error.hpp"
 
@@ -23,11 +24,21 @@ std::vector<std::size_t> read_offsets(const hdf5::Group& group, const char* name
   return {values.begin(), values.end()};
 }
 
+/// Rows and what else they use.
+std::size_t source_count(const SourceClusters& clusters) {
+  // Any number of particles will do that no row's id reaches.
+  const GlobalIndex particles = clusters.rows.empty() ? 0 : clusters.rows.back() + 1;
+  std::set<GlobalIndex> ids(clusters.rows.begin(), clusters.rows.end());
+  for (const std::size_t cluster : clusters.row_clusters) ids.insert(clusters.source_id(cluster, particles));
+  return ids.size();
+}
+
 }  // namespace
 
 void ClusteredMesh::write(hdf5::Group group) const {
   group.attribute("type", type);
   group.attribute("pairs", static_cast<long long>(clusters.row_clusters.size()));
+  group.attribute("sources", static_cast<long long>(source_count(clusters)));
   group.attribute("unclustered_pairs", static_cast<long long>(unclustered_pairs));
   table.write(group);
   group.write("rows", integers(clusters.rows));

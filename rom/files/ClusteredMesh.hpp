@@ -21,7 +21,7 @@ struct ClusteredMesh {
 
   /// The group `clusters` of a window:
   ///
-  ///     attributes   type, pairs, unclustered_pairs
+  ///     attributes   type, pairs, sources (rows and what else they use), unclustered_pairs
   ///     /            ids, positions, reference, modes: of the clusters, as of particles
   ///                  rows, row_offsets, row_clusters, row_weights; member_offsets, members, shares: SourceClusters
   ///     model/       written by the model itself

@@ -40,7 +40,7 @@ class Ptrom : public HyperReduced {
       const TimeWindow& time = opened.file.windows()[window];
       const int columns = time.first + time.size;
       const ParticleTable clusters = opened.file.cluster_table(window);
-      const std::size_t sources = mesh.rows.size() + clusters.ids.size();
+      const auto sources = static_cast<std::size_t>(group.integer("sources"));
       const std::shared_ptr<Model> model = opened.checked(
           full == nullptr ? Registry<Model>::restore(block, {opened.sharing(sources)}, group.group("model"))
                           : built(*full, group),

@@ -106,8 +106,8 @@ ClusteredMesh learn_clusters(const Teuchos::ParameterList& block, const Model& m
   const auto clustering = Registry<SourceClustering>::create(block, NoContext{});
   mesh.clusters = clustering->clusters(pairs, motion_of(table, window.basis, moments));
   mesh.table = table_of_clusters(mesh.clusters, table, model.rows()->getMaxAllGlobalIndex() + 1);
-  if (clustering->weights_are_fitted()) {
-    fit_weights(pairwise_model, *window.sample, table, mesh.table, moments, mesh.clusters);
+  if (const auto fit = clustering->weight_fit()) {
+    fit_weights(pairwise_model, *window.sample, table, mesh.table, moments, *fit, mesh.clusters);
   }
   mesh.model = pairwise_model.clustered(mesh.clusters);
   mesh.unclustered_pairs = pairs.sources.size();

@@ -222,7 +222,7 @@ std::unique_ptr<Model> Chain::clustered(const SourceClusters& clusters) const {
   kept->offsets = clusters.row_offsets;
   kept->weights = clusters.row_weights;
   for (const std::size_t cluster : clusters.row_clusters) {
-    kept->sources.push_back(count_ + static_cast<GlobalIndex>(cluster));
+    kept->sources.push_back(clusters.source_id(cluster, count_));
   }
   kept->positions.resize(clusters.clusters(), 0.0);
   for (std::size_t cluster = 0; cluster < clusters.clusters(); ++cluster) {
@@ -301,6 +301,8 @@ Teuchos::ParameterList input_of(const Case& values) {
     clustering.set("type", values.clustering);
     if (values.clustering == "per row") {
       clustering.set("clusters", values.clusters).set("weights", values.cluster_weights);
+    } else if (values.clustering == "among samples") {
+      clustering.set("sources", values.clusters).set("ridge", 1e-3);
     } else {
       clustering.set("opening", 0.5).set("leaf", 1);
       if (values.clustering == "robust") clustering.set("smooth", 0.0).set("weights", "sums");

@@ -169,6 +169,36 @@ TEST(HeatClusters, HaveTheirRowsFirstThenTheClustersTheyUse) {
   }
 }
 
+/// Each row alone with one other row for its source, whoever lists whom: nothing is taken to act both ways.
+TEST(HeatClusters, OfRowsAreTheRowsAndActOneWay) {
+  const auto model = HeatCase().model();
+  SourceClusters none;
+  none.rows = none.members = rows;
+  none.shares.assign(rows.size(), 1.0);
+  none.row_offsets.assign(rows.size() + 1, 0);
+  for (std::size_t c = 0; c <= rows.size(); ++c) none.member_offsets.push_back(c);
+  const auto without = model->clustered(none);
+  const Evaluated quiet = evaluated(*without, none);
+  const std::size_t count = without->rows()->getNodeNumElements();
+  EXPECT_EQ(without->sources()->getNodeNumElements(), count);
+  for (const auto& [row, source] : {std::pair<std::size_t, std::size_t>{2, 7}, {7, 2}, {8, 0}}) {
+    SourceClusters one = none;
+    for (std::size_t r = row + 1; r <= rows.size(); ++r) one.row_offsets[r] = 1;
+    one.row_clusters = {source};
+    one.row_weights = {-1e10};
+    const auto clustered = model->clustered(one);
+    const Evaluated found = evaluated(*clustered, one);
+    for (std::size_t j = 0; j < clustered->sources()->getNodeNumElements(); ++j) {
+      EXPECT_LT(clustered->sources()->getGlobalElement(static_cast<LocalIndex>(j)), particles);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool listed = clustered->rows()->getGlobalElement(static_cast<LocalIndex>(i)) == rows[row];
+      EXPECT_EQ(found.rate(i) != quiet.rate(i), listed);
+      EXPECT_EQ(found.diagonal(i) != quiet.diagonal(i), listed);
+    }
+  }
+}
+
 /// With constant properties a pair's term is linear in its source's temperature; with those of steel it is not.
 TEST(HeatClusters, AreExactForConstantProperties) {
   const auto model = constant_case().model();

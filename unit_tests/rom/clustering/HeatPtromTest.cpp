@@ -133,10 +133,41 @@ TEST(HeatPtrom, ErrsLessWithFittedWeights) {
   EXPECT_LT(hotter_errors[1], 1.5 * hotter_errors[0]);
 }
 
-TEST(HeatPtrom, HasTheSameClustersOnAnyNumberOfRanks) {
+/// Few of the other sampled particles tell each one's sum, and no further particle is looked at. At another power,
+/// which nothing was fitted to, they must do no harm beside what GNAT misses there itself.
+TEST(HeatPtrom, DoesWithTheSampledParticlesAlone) {
+  const TestFolder folder;
+  const HeatCase heat;
+  HeatCase hotter;
+  hotter.heat_source = HeatCase::beam(44.0);
+  std::vector<double> errors;
+  for (const int sources : {2, 4, 16}) {
+    Case values = settings(folder.path().string(), sources);
+    values.clustering = "among samples";
+    train(values, heat, world());
+    errors.push_back(difference(run(values, heat, "ptrom", world()), run(values, heat, "gnat", world())));
+    values.method = "ptrom";
+    const Teuchos::ParameterList input = input_of(values, heat);
+    nlohmann::json facts;
+    Registry<Method>::create(input.sublist("method"), Method::Context{input, world()})->report(facts);
+    EXPECT_EQ(facts["sources"], values.samples);
+    EXPECT_EQ(facts["pairs"], 2 * values.samples * sources);
+    if (sources < 16) continue;
+    EXPECT_LT(difference(run(values, hotter, "ptrom", world()), run(values, hotter, "gnat", world())), 5e-3);
+  }
+  EXPECT_LT(errors[1], errors[0]);
+  EXPECT_LT(errors[2], errors[1]);
+  EXPECT_LT(errors[2], 1e-3);
+}
+
+class HeatClusterings : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(HeatPtrom, HeatClusterings, testing::Values("per row", "among samples"));
+
+TEST_P(HeatClusterings, AreTheSameOnAnyNumberOfRanks) {
   const TestFolder folder;
   const HeatCase heat;
   Case values = settings(folder.path().string(), 12);
+  values.clustering = GetParam();
   Case serial = values;
   serial.folder = folder / ("rank" + std::to_string(world()->getRank()));
   std::filesystem::create_directory(serial.folder);

@@ -74,11 +74,14 @@ class Chains : public testing::TestWithParam<Setting> {
     values.windows = GetParam().windows;
     values.components = GetParam().components;
     values.model = GetParam().model;
+    values.clustering = clustering_;
+    if (clustering_ == "among samples") values.clusters = 16;
     report_ = train(values, world());
     return values;
   }
   TestFolder folder_;
   RunReport report_;
+  std::string clustering_ = "per row";
 };
 
 /// PTROM tells the sampled particles, GNAT their sources as well; what is not told is 0.
@@ -107,6 +110,14 @@ TEST_P(Chains, AreGnatWhereClusteringIsExact) {
   const nlohmann::json& facts = report_.section("training");
   EXPECT_NEAR(facts["trial_clustered"]["worst_query_error"].get<double>(),
               facts["trial"]["worst_query_error"].get<double>(), 1e-7);
+}
+
+/// So is any sum over M of the sampled particles, up to the ridge of the fit.
+TEST_P(Chains, AreGnatAmongSamples) {
+  clustering_ = "among samples";
+  const Case values = trained();
+  const std::vector<double> gnat = run(values, "gnat", world()), ptrom = run(values, "ptrom", world());
+  EXPECT_LT(difference_where_both_tell(ptrom, gnat), 1e-3);
 }
 
 TEST_P(Chains, RestartBitByBit) {
