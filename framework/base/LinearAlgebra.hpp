@@ -38,6 +38,16 @@ using ConstMatrixView = Kokkos::View<const double**, Kokkos::LayoutLeft, Device>
 using PositionView = Kokkos::View<double* [3], Kokkos::LayoutRight, Device>;
 using ConstPositionView = Kokkos::View<const double* [3], Kokkos::LayoutRight, Device>;
 
+/// A view that does not count as an owner of its array, for the lambdas of short loops: counting costs two atomic
+/// operations and two look-ups of a thread's own data, as much as a dozen of pairs. The array must outlive it.
+template <class View>
+using Borrowed = Kokkos::View<typename View::data_type, typename View::array_layout, typename View::device_type,
+                              Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
+template <class View>
+KOKKOS_FORCEINLINE_FUNCTION Borrowed<View> borrowed(const View& view) {
+  return view;
+}
+
 /// Entries of a map on this rank. The member function that says so was renamed between Trilinos 13 and 14.
 inline LocalIndex local_size(const Map& map) { return map.getMaxLocalIndex() + 1; }
 

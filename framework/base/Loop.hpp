@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cstring>
 #include <string>
 #include <type_traits>
 
@@ -26,11 +26,11 @@ void loop(const std::string& label, LocalIndex count, const Body& body) {
   Kokkos::parallel_for(label, RangePolicy(0, count), body);
 }
 
-/// Whether a(i) == b(i) everywhere; of equal lengths.
+/// Whether a and b, of equal lengths, hold the same numbers; zeros of different sign need not count as the same.
 inline bool same_values(const ConstVectorView& a, const ConstVectorView& b) {
 #ifdef KOKKOS_ENABLE_SERIAL
   if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>) {
-    return std::equal(a.data(), a.data() + a.extent(0), b.data());
+    return std::memcmp(a.data(), b.data(), a.extent(0) * sizeof(double)) == 0;
   }
 #endif
   LocalIndex different = 0;
@@ -43,8 +43,10 @@ inline bool same_values(const ConstVectorView& a, const ConstVectorView& b) {
 /// to(i) = from(i), of equal lengths. Unlike Kokkos::deep_copy it waits for nothing.
 inline void copy_values(const ConstVectorView& from, const VectorView& to) {
   static const std::string label = "kiln::copy values";
+  const auto source = borrowed(from);
+  const auto target = borrowed(to);
   loop(
-      label, static_cast<LocalIndex>(to.extent(0)), KOKKOS_LAMBDA(const LocalIndex i) { to(i) = from(i); });
+      label, static_cast<LocalIndex>(to.extent(0)), KOKKOS_LAMBDA(const LocalIndex i) { target(i) = source(i); });
 }
 
 }  // namespace kiln

@@ -11,9 +11,9 @@ class LastState {
  public:
   explicit LastState(std::size_t size = 0) : u_("last state", size) {}
 
-  bool is(ConstVectorView u) const { return known_ && same_values(u, u_); }
+  bool is(const ConstVectorView& u) const { return known_ && same_values(u, u_); }
   /// Once what u was for has been computed.
-  void remember(ConstVectorView u) {
+  void remember(const ConstVectorView& u) {
     copy_values(u, u_);
     known_ = true;
   }

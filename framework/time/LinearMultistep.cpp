@@ -21,10 +21,12 @@ namespace {
 const std::string add_level_label = "kiln::time::add a level to the history";
 
 /// `first`: the history is overwritten.
-void add_level(double alpha, const ConstVectorView& u, bool first, const VectorView& history) {
+void add_level(double alpha, const VectorView& u, bool first, const VectorView& history) {
+  const auto level = borrowed(u);
+  const auto sum = borrowed(history);
   loop(
       add_level_label, static_cast<LocalIndex>(history.extent(0)),
-      KOKKOS_LAMBDA(const LocalIndex i) { history(i) = (first ? 0.0 : history(i)) + alpha * u(i); });
+      KOKKOS_LAMBDA(const LocalIndex i) { sum(i) = (first ? 0.0 : sum(i)) + alpha * level(i); });
 }
 
 MultistepCoefficients starter_of(const MultistepCoefficients& scheme) {

@@ -48,7 +48,9 @@ HeatDomain whole_lanes(const HeatDomain& domain) {
 }
 
 template <PairQuantity quantity>
-void sum_rows(const PairRows& pairs, const ConstThermalStateView& states, const VectorView& sums) {
+void sum_rows(const PairRows& pairs, const ConstThermalStateView& of_sources, const VectorView& of_rows) {
+  const auto states = borrowed(of_sources);
+  const auto sums = borrowed(of_rows);
   loop(
       sum_label, static_cast<LocalIndex>(sums.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
 #ifdef KILN_LANES
@@ -63,7 +65,7 @@ void sum_rows(const PairRows& pairs, const ConstThermalStateView& states, const 
 
 class CompressedRows final : public PairLayout {
  public:
-  explicit CompressedRows(const HeatDomain& domain) : pairs_(whole_lanes(domain)) {}
+  explicit CompressedRows(const HeatDomain& domain) : whole_(whole_lanes(domain)), pairs_(whole_) {}
   const char* name() const override { return "compressed rows"; }
   std::size_t bytes() const override {
     return pairs_.offsets.span() * sizeof(std::size_t) + pairs_.neighbours.span() * sizeof(LocalIndex) +
@@ -78,7 +80,8 @@ class CompressedRows final : public PairLayout {
   }
 
  private:
-  PairRows pairs_;
+  HeatDomain whole_;
+  PairRows pairs_;  ///< of whole_
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ void HeatModel::linearise(ConstVectorView u, double time) const {
   const auto states = states_;
   const auto slopes = slopes_;
   const auto masses = domain_.masses;
-  const MaterialTable table = table_;
+  const MaterialLookup table = table_;
   Kokkos::parallel_for(
       "kiln::sph::thermal slopes", RangePolicy(0, source_count()), KOKKOS_LAMBDA(LocalIndex j) {
         const MaterialPoint<double> slope = table.slopes(u(j));

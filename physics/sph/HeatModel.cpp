@@ -138,12 +138,13 @@ void HeatModel::initial_state(VectorView u) const {
   Kokkos::deep_copy(ExecutionSpace(), u, initial_temperature_);
 }
 
-void HeatModel::update_states(ConstVectorView u) const {
-  if (states_of_.is(u)) return;
+void HeatModel::update_states(const ConstVectorView& of_sources) const {
+  if (states_of_.is(of_sources)) return;
   fluxes_hold_ = false;
-  const auto states = states_;
-  const auto masses = domain_.masses;
-  const MaterialTable table = table_;
+  const auto u = borrowed(of_sources);
+  const auto states = borrowed(states_);
+  const auto masses = borrowed(domain_.masses);
+  const MaterialLookup table = table_;
   LocalIndex first = 0;
 #ifdef KILN_LANES
   const LocalIndex whole = source_count() / lane_count;
@@ -157,7 +158,7 @@ void HeatModel::update_states(ConstVectorView u) const {
   loop(
       thermal_states_label, source_count() - first,
       KOKKOS_LAMBDA(LocalIndex j) { states(first + j) = thermal_state(table, u(first + j), masses(first + j)); });
-  states_of_.remember(u);
+  states_of_.remember(of_sources);
 }
 
 bool HeatModel::absorbed_holds(double time) const {
@@ -177,24 +178,25 @@ void HeatModel::update_absorbed(double time) const {
   const auto number = static_cast<LocalIndex>(heated_.extent(0));
   if (number == 0 || absorbed_holds(time)) return;
   heat_source_->flux(time, heated_positions_, heated_flux_);
-  const auto absorbed = absorbed_;
-  const auto heated = heated_;
-  const auto flux = heated_flux_;
-  const auto areas = domain_.areas;
+  const auto absorbed = borrowed(absorbed_);
+  const auto heated = borrowed(heated_);
+  const auto flux = borrowed(heated_flux_);
+  const auto areas = borrowed(domain_.areas);
   loop(
       absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
 }
 
-void HeatModel::rate(ConstVectorView u, double time, VectorView f) const {
-  check("rate", u.extent(0), f.extent(0));
+void HeatModel::rate(ConstVectorView u, double time, VectorView of_rows) const {
+  check("rate", u.extent(0), of_rows.extent(0));
   update_states(u);
   update_absorbed(time);
   if (!fluxes_hold_) layout_->sum(PairQuantity::flux, states_, fluxes_);
   fluxes_hold_ = true;
-  const auto states = states_;
-  const auto sums = fluxes_;
-  const auto masses = domain_.masses;
-  const auto absorbed = absorbed_;
+  const auto f = borrowed(of_rows);
+  const auto states = borrowed(states_);
+  const auto sums = borrowed(fluxes_);
+  const auto masses = borrowed(domain_.masses);
+  const auto absorbed = borrowed(absorbed_);
   loop(
       rate_label, row_count(),
       KOKKOS_LAMBDA(LocalIndex i) { f(i) = heat_rate(states(i), sums(i), masses(i), absorbed(i)); });

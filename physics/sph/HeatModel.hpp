@@ -73,7 +73,7 @@ class HeatModel final : public Model, public PairwiseModel {
   LocalIndex source_count() const { return static_cast<LocalIndex>(domain_.masses.extent(0)); }
   void check(const char* method, std::size_t u, std::size_t f) const;
   /// Fills states_ from temperatures, if they are not those of the last call.
-  void update_states(ConstVectorView u) const;
+  void update_states(const ConstVectorView& of_sources) const;
   /// Fills states_, slopes_ and absorbed_.
   void linearise(ConstVectorView u, double time) const;
   /// Fills absorbed_ at the heated rows.

@@ -88,7 +88,7 @@ class HeatModel::AtPoints final : public PointRates {
     const auto states = states_;
     const auto specific_heats = specific_heats_;
     const auto masses = model_.domain_.masses;
-    const MaterialTable table = model_.table_;
+    const MaterialLookup table = model_.table_;
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
     loop(

@@ -60,11 +60,13 @@ class GaussianBeam final : public HeatSource {
     const double y = start_[1] + velocity_[1] * time;
     const double peak = power_ / (2.0 * pi * width_ * width_);
     const double exponent = -1.0 / (2.0 * (printed_ ? pi : 1.0) * width_ * width_);
+    const auto places = borrowed(positions);
+    const auto flux = borrowed(q);
     loop(
         beam_label, static_cast<LocalIndex>(positions.extent(0)), KOKKOS_LAMBDA(LocalIndex i) {
-          const double dx = positions(i, 0) - x;
-          const double dy = positions(i, 1) - y;
-          q(i) = peak * exp(exponent * (dx * dx + dy * dy));
+          const double dx = places(i, 0) - x;
+          const double dy = places(i, 1) - y;
+          flux(i) = peak * exp(exponent * (dx * dx + dy * dy));
         });
   }
 

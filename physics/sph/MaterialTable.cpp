@@ -46,7 +46,7 @@ MaterialTable::MaterialTable(const Material& material, double from, double to, d
     : MaterialTable(from, step, tabulated(material, from, to, step, path)) {}
 
 MaterialTable::MaterialTable(double from, double step, const std::vector<double>& values)
-    : from_(from), step_(step), inverse_step_(1.0 / step), intervals_(static_cast<LocalIndex>(values.size() / 3) - 1) {
+    : MaterialLookup(from, step, static_cast<LocalIndex>(values.size() / 3) - 1) {
   if (values.size() % 3 != 0 || intervals_ < 1) {
     throw std::invalid_argument(fmt::format("{} numbers do not make a material table", values.size()));
   }
@@ -60,11 +60,12 @@ MaterialTable::MaterialTable(double from, double step, const std::vector<double>
     }
   }
   Kokkos::deep_copy(rows, host);
-  rows_ = rows;
+  held_ = rows;
+  rows_ = held_.data();
 }
 
 std::vector<double> MaterialTable::values() const {
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), rows_);
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), held_);
   std::vector<double> values;
   for (std::size_t i = 0; i < host.extent(0); ++i) {
     values.insert(values.end(), host(i).values, host(i).values + 3);

@@ -5,7 +5,7 @@
 
 namespace kiln {
 
-/// The pairs of a domain row by row, for kernels to capture.
+/// The pairs of a domain row by row, for kernels to capture while the domain lives.
 struct PairRows {
   explicit PairRows(const HeatDomain& domain)
       : offsets(domain.pairs.offsets), neighbours(domain.pairs.neighbours), weights(domain.weights) {}
@@ -19,9 +19,9 @@ struct PairRows {
   }
   KOKKOS_FORCEINLINE_FUNCTION const double* weights_of(LocalIndex row) const { return weights.data() + offsets(row); }
 
-  ConstOffsetView offsets;
-  ConstIndexView neighbours;
-  ConstVectorView weights;
+  Borrowed<ConstOffsetView> offsets;
+  Borrowed<ConstIndexView> neighbours;
+  Borrowed<ConstVectorView> weights;
 };
 
 }  // namespace kiln

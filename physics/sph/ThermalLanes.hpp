@@ -5,8 +5,8 @@
 #ifdef KILN_LANES
 namespace kiln {
 
-/// MaterialTable::at for eight temperatures.
-inline MaterialPoint<Lanes> properties_at(const MaterialTable& table, const Lanes& u) {
+/// MaterialLookup::at for eight temperatures.
+inline MaterialPoint<Lanes> properties_at(const MaterialLookup& table, const Lanes& u) {
   double fraction[lane_count];
   int interval[lane_count];
 #pragma omp simd
@@ -31,7 +31,7 @@ struct ThermalLanes {
   Lanes volume;
   Lanes specific_heat;
 };
-inline ThermalLanes thermal_lanes(const MaterialTable& table, const Lanes& temperature, const Lanes& masses) {
+inline ThermalLanes thermal_lanes(const MaterialLookup& table, const Lanes& temperature, const Lanes& masses) {
   const MaterialPoint<Lanes> point = properties_at(table, temperature);
   const Lanes both = 1.0 / (point.conductivity * point.density);
   return {temperature, both * point.density, masses * (both * point.conductivity), point.specific_heat};

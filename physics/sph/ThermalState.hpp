@@ -22,7 +22,7 @@ using ConstThermalStateView = Kokkos::View<const ThermalState<double>*, Device>;
 
 /// The state at temperature u (K) of a particle of the given mass (kg).
 template <class Scalar>
-KOKKOS_INLINE_FUNCTION ThermalState<Scalar> thermal_state(const MaterialTable& table, const Scalar& temperature,
+KOKKOS_INLINE_FUNCTION ThermalState<Scalar> thermal_state(const MaterialLookup& table, const Scalar& temperature,
                                                           double mass) {
   const MaterialPoint<Scalar> point = table.at(temperature);
   // One divide for 1/k and m/ρ: half of the time goes into dividing.

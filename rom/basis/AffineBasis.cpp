@@ -3,19 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 #include "rom/linear_algebra/Dense.hpp"
 
 namespace kiln {
-namespace {
-
-ConstVectorView part(const ConstVectorView& values, int first, int count) {
-  return Kokkos::subview(values, std::make_pair(first, first + count));
-}
-
-}  // namespace
-
 AffineBasis::AffineBasis(ConstVectorView reference, ConstMatrixView modes, int first)
     : reference_(reference), modes_(modes), first_(first) {
   const int columns = static_cast<int>(modes.extent(1));
@@ -33,13 +26,13 @@ AffineBasis::AffineBasis(ConstVectorView reference, ConstMatrixView modes, int f
 void AffineBasis::begin_at(ConstVectorView earlier) const {
   std::copy_n(earlier.data(), first_, earlier_.data());
   std::copy_n(reference_.data(), reference_.extent(0), beginning_.data());
-  dense::multiply(1.0, dense::leading_columns(modes_, first_), earlier, 1.0, beginning_);
+  const ConstVectorView known = Kokkos::subview(earlier, std::make_pair(0, first_));
+  dense::multiply(1.0, dense::leading_columns(modes_, first_), known, 1.0, beginning_);
 }
 
 void AffineBasis::state(ConstVectorView x, VectorView u) const {
-  const ConstVectorView earlier = part(x, 0, first_);
-  if (!std::equal(earlier.data(), earlier.data() + first_, earlier_.data())) begin_at(earlier);
-  dense::affine(beginning_, tangent_, part(x, first_, size()), u);
+  if (std::memcmp(x.data(), earlier_.data(), first_ * sizeof(double)) != 0) begin_at(x);
+  dense::affine(beginning_, tangent_, x.data() + first_, u.data());
 }
 
 std::unique_ptr<TrialSpace> AffineBasis::restricted(const std::vector<LocalIndex>& particles, int components) const {

@@ -26,7 +26,7 @@ void multiply(Teuchos::ETransp transpose, double alpha, const ConstMatrixView& a
   Blas().GEMV(transpose, rows(a), columns(a), alpha, a.data(), leading_dimension(a), x.data(), 1, beta, y.data(), 1);
 }
 
-/// Entries of a matrix up to which affine() goes without BLAS: what a core keeps at hand.
+/// Entries of a matrix up to which affine() and transposed() go without BLAS: what a core keeps at hand.
 constexpr std::size_t short_product = 1 << 15;
 
 #ifdef KILN_LANES
@@ -42,25 +42,62 @@ void affine_rows(const double* b, const ConstMatrixView& a, const double* x, dou
   }
   for (int block = 0; block < Blocks; ++block) store_lanes(y + i + block * lane_count, sums[block]);
 }
+
+/// The products of as many columns with x.
+template <int Columns>
+void column_products(const double* column, std::size_t stride, std::size_t rows, const double* x, double* y) {
+  Lanes sums[Columns] = {};
+  std::size_t i = 0;
+  for (; i + lane_count <= rows; i += lane_count) {
+    const Lanes factor = lanes_at(x + i);
+    for (int c = 0; c < Columns; ++c) sums[c] += lanes_at(column + c * stride + i) * factor;
+  }
+  for (int c = 0; c < Columns; ++c) y[c] = lane_sum(sums[c]);
+  for (; i < rows; ++i) {
+    for (int c = 0; c < Columns; ++c) y[c] += column[c * stride + i] * x[i];
+  }
+}
 #endif
 
 }  // namespace
 
-void affine(const ConstVectorView& b, const ConstMatrixView& a, const ConstVectorView& x, const VectorView& y) {
+void affine(const ConstVectorView& b, const ConstMatrixView& a, const double* x, double* y) {
   const std::size_t rows = a.extent(0), columns = a.extent(1);
   if (rows * columns > short_product) {
-    std::copy_n(b.data(), rows, y.data());
-    return multiply(1.0, a, x, 1.0, y);
+    std::copy_n(b.data(), rows, y);
+    Blas().GEMV(Teuchos::NO_TRANS, static_cast<int>(rows), static_cast<int>(columns), 1.0, a.data(),
+                leading_dimension(a), x, 1, 1.0, y, 1);
+    return;
   }
   std::size_t i = 0;
 #ifdef KILN_LANES
-  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4>(b.data(), a, x.data(), y.data(), i);
-  for (; i + lane_count <= rows; i += lane_count) affine_rows<1>(b.data(), a, x.data(), y.data(), i);
+  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4>(b.data(), a, x, y, i);
+  for (; i + lane_count <= rows; i += lane_count) affine_rows<1>(b.data(), a, x, y, i);
 #endif
   for (; i < rows; ++i) {
     double sum = b(i);
-    for (std::size_t k = 0; k < columns; ++k) sum += a(i, k) * x(k);
-    y(i) = sum;
+    for (std::size_t k = 0; k < columns; ++k) sum += a(i, k) * x[k];
+    y[i] = sum;
+  }
+}
+
+void transposed(const ConstMatrixView& a, const double* x, double* y) {
+  const std::size_t rows = a.extent(0), columns = a.extent(1);
+  if (rows * columns > short_product) {
+    Blas().GEMV(Teuchos::TRANS, static_cast<int>(rows), static_cast<int>(columns), 1.0, a.data(), leading_dimension(a),
+                x, 1, 0.0, y, 1);
+    return;
+  }
+  std::size_t k = 0;
+#ifdef KILN_LANES
+  const std::size_t stride = leading_dimension(a);
+  for (; k + 5 <= columns; k += 5) column_products<5>(a.data() + k * stride, stride, rows, x, y + k);
+  for (; k < columns; ++k) column_products<1>(a.data() + k * stride, stride, rows, x, y + k);
+#endif
+  for (; k < columns; ++k) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < rows; ++i) sum += a(i, k) * x[i];
+    y[k] = sum;
   }
 }
 

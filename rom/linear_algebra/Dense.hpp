@@ -18,9 +18,10 @@ void multiply(double alpha, const ConstMatrixView& a, const ConstVectorView& x, 
 /// y = alpha Aᵀ x + beta y.
 void multiply_transposed(double alpha, const ConstMatrixView& a, const ConstVectorView& x, double beta,
                          const VectorView& y);
-/// y = b + A x. For matrices so small that what BLAS does around its product takes longer than the product, as those of
-/// a sample mesh are; larger ones go to BLAS. y is none of the others.
-void affine(const ConstVectorView& b, const ConstMatrixView& a, const ConstVectorView& x, const VectorView& y);
+/// y = b + A x and y = Aᵀ x. For matrices so small that what BLAS and views do around a product takes longer than the
+/// product, as those of a sample mesh are; larger ones go to BLAS. Arrays are contiguous; y is none of the others.
+void affine(const ConstVectorView& b, const ConstMatrixView& a, const double* x, double* y);
+void transposed(const ConstMatrixView& a, const double* x, double* y);
 /// C = alpha op(A) op(B) + beta C.
 void product(Transpose transpose_a, Transpose transpose_b, double alpha, const ConstMatrixView& a,
              const ConstMatrixView& b, double beta, const MatrixView& c);
@@ -81,6 +82,8 @@ class LuFactors {
   static constexpr int largest_inverse = 64;
 
   double reciprocal_condition(double norm);
+  /// result = A⁻ᵀ from the factors.
+  void invert(const MatrixView& result) const;
 
   MatrixView factors_;
   std::vector<int> pivots_;

@@ -143,33 +143,33 @@ double LuFactors::reciprocal_condition(double norm) {
     inverse_transposed_ = MatrixView("kiln::rom::transposed inverse", n, n);
   }
   right_.resize(n);
-  inverse_transposed(inverse_transposed_);
+  invert(inverse_transposed_);
   double inverse_norm = 0.0;
   for (int j = 0; j < n; ++j) {
     double sum = 0.0;
     for (int i = 0; i < n; ++i) sum += std::abs(inverse_transposed_(j, i));
+    if (!std::isfinite(sum)) return 0.0;
     inverse_norm = std::max(inverse_norm, sum);
   }
-  return norm > 0.0 && std::isfinite(inverse_norm) ? 1.0 / (norm * inverse_norm) : n == 0 ? 1.0 : 0.0;
+  return norm > 0.0 ? 1.0 / (norm * inverse_norm) : n == 0 ? 1.0 : 0.0;
 }
 
 void LuFactors::solve(const VectorView& b) const {
   const int n = static_cast<int>(factors_.extent(0));
   if (inverse_transposed_.extent(0) == factors_.extent(0)) {
     std::copy_n(b.data(), n, right_.data());
-    for (int k = 0; k < n; ++k) {
-      const double* const row = &inverse_transposed_(0, k);
-      double sum = 0.0;
-      for (int i = 0; i < n; ++i) sum += row[i] * right_[i];
-      b(k) = sum;
-    }
-    return;
+    return transposed(inverse_transposed_, right_.data(), b.data());
   }
   int info = 0;
   Lapack().GETRS('N', n, 1, factors_.data(), leading_dimension(factors_), pivots_.data(), b.data(), n, &info);
 }
 
 void LuFactors::inverse_transposed(const MatrixView& result) const {
+  if (inverse_transposed_.extent(0) != factors_.extent(0)) return invert(result);
+  Kokkos::deep_copy(result, inverse_transposed_);
+}
+
+void LuFactors::invert(const MatrixView& result) const {
   const int n = static_cast<int>(factors_.extent(0));
   Kokkos::deep_copy(result, 0.0);
   for (int k = 0; k < n; ++k) result(k, k) = 1.0;

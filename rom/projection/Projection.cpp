@@ -15,9 +15,13 @@ namespace {
 // A label made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
 const std::string residual_label = "kiln::rom::residual";
 
-void form_residual(const StepResidual& step, ConstVectorView u, ConstVectorView f, VectorView r) {
+template <class Rate>
+void form_residual(const StepResidual& step, const VectorView& state, const Rate& rate, const VectorView& residual) {
   const double alpha = step.alpha, gamma = step.gamma;
-  const ConstVectorView history = step.history;
+  const auto history = borrowed(step.history);
+  const auto u = borrowed(state);
+  const auto f = borrowed(rate);
+  const auto r = borrowed(residual);
   loop(
       residual_label, static_cast<LocalIndex>(r.extent(0)),
       KOKKOS_LAMBDA(const LocalIndex i) { r(i) = alpha * u(i) - gamma * f(i) + history(i); });
@@ -130,9 +134,9 @@ void Projection::linearise(double alpha, double gamma, ConstVectorView x, double
   ++linearisations_;
 }
 
-void Projection::project(ConstVectorView rows, VectorView g) {
-  if (communicator_->getSize() == 1) return dense::multiply_transposed(1.0, test_, rows, 0.0, g);
-  dense::multiply_transposed(1.0, test_, rows, 0.0, local_g_);
+void Projection::project(const VectorView& rows, const VectorView& g) {
+  if (communicator_->getSize() == 1) return dense::transposed(test_, rows.data(), g.data());
+  dense::transposed(test_, rows.data(), local_g_.data());
   Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, static_cast<int>(g.extent(0)), local_g_.data(), g.data());
 }
 

@@ -89,7 +89,7 @@ class Projection {
   bool linearised_for(double alpha, double gamma) const;
   /// Evaluates state and rate for x; f: rows × components. Fills residual_ and g_ = Ψᵀr; returns ‖g_‖.
   double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
-  void project(ConstVectorView rows, VectorView g);
+  void project(const VectorView& rows, const VectorView& g);
   /// û ← û + scale · step_.
   void move(VectorView x, double scale) const;
   /// The step of an explicit scheme in an affine trial space, linear in û: one update, one evaluation of f.

@@ -65,9 +65,8 @@ void PointProjection::linearise_point(std::size_t point, const StepResidual& res
   const ConstMatrixView test =
       projection_.test_basis().form(tangent_rows, jacobian_tangent_, *model_.rows()->getComm());
   dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test, jacobian_tangent_, 0.0, small_);
-  dense::LuFactors factors;
-  Projection::require_regular(factors.factor(small_), residual.time);
-  factors.inverse_transposed(inverse_);
+  Projection::require_regular(factors_.factor(small_), residual.time);
+  factors_.inverse_transposed(inverse_);
   test_.put(point, test);
   inverse_transposed_.put(point, inverse_);
 }

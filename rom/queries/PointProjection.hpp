@@ -72,6 +72,7 @@ class PointProjection {
   // Of one point.
   VectorView point_state_;
   MatrixView jacobian_tangent_, small_, inverse_;
+  dense::LuFactors factors_;
 };
 
 }  // namespace kiln

@@ -21,15 +21,21 @@ MatrixView random_matrix(std::size_t rows, std::size_t columns, unsigned seed) {
 VectorView column_of(const MatrixView& a, std::size_t k) { return Kokkos::subview(a, Kokkos::ALL, k); }
 
 /// With every remainder of the vectors' width, in a block of a larger matrix, and beyond what goes without BLAS.
-TEST(Dense, AffineIsThePlainSum) {
+TEST(Dense, ShortProductsArePlainSums) {
   for (const std::size_t rows : {0, 1, 7, 8, 9, 31, 32, 41, 100, 5000}) {
-    for (const std::size_t columns : {0, 1, 10}) {
+    for (const std::size_t columns : {0, 1, 12}) {
       const MatrixView whole = random_matrix(rows + 3, columns + 2, 3);
       const ConstMatrixView a =
           Kokkos::subview(whole, std::make_pair(std::size_t(2), rows + 2), std::make_pair(std::size_t(1), columns + 1));
       const VectorView b = column_of(random_matrix(rows, 1, 5), 0), x = column_of(random_matrix(columns, 1, 7), 0);
-      const VectorView y("y", rows);
-      affine(b, a, x, y);
+      const VectorView y("y", rows), z("z", columns);
+      affine(b, a, x.data(), y.data());
+      transposed(a, b.data(), z.data());
+      for (std::size_t k = 0; k < columns; ++k) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < rows; ++i) sum += a(i, k) * b(i);
+        EXPECT_NEAR(z(k), sum, 1e-12) << rows << " rows, " << columns << " columns";
+      }
       for (std::size_t i = 0; i < rows; ++i) {
         double sum = b(i);
         for (std::size_t k = 0; k < columns; ++k) sum += a(i, k) * x(k);
