@@ -17,8 +17,8 @@ namespace kiln::bench {
 using Words = std::vector<std::string>;
 using Work = std::function<void(const Words& words, const Teuchos::RCP<const Communicator>& communicator)>;
 
-/// The main function of a program of ./dev bench: MPI and Kokkos, one BLAS thread as kiln itself takes, `work` on the
-/// command line's words, of which there must be one of `counts`; failures told on stderr.
+/// The main function of a program of ./dev bench: MPI and Kokkos, one BLAS thread, `work` on the command line's words,
+/// of which there must be one of `counts`; failures told on stderr.
 inline int program(int argc, char** argv, const Words& usage, const std::vector<int>& counts, const Work& work) {
   const auto set_threads = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
   if (set_threads != nullptr) set_threads(1);

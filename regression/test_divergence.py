@@ -33,6 +33,9 @@ class DivergenceTest(KilnTest):
                 folder = self.folder / f"ranks-{ranks}" / "fom"
                 report = json.loads((folder / "report.json").read_text())
                 self.assertEqual(report["run"]["status"], "diverged: " + message.rstrip("\n"))
+                self.assertEqual(report["solve"]["steps"], step - 1)
+                self.assertEqual(report["solve"]["residuals"], step - 1)
+                self.assertGreater(report["time"]["steps_wall_s"], 0.0)
                 with h5py.File(folder / "checkpoint.h5") as checkpoint:
                     self.assertEqual(checkpoint.attrs["step"], (step - 1) // 5 * 5)
                     self.assertEqual(checkpoint["unknown"].shape[0], 1728)
@@ -41,6 +44,9 @@ class DivergenceTest(KilnTest):
                     written = np.asarray(run["step"]) >= 0
                     self.assertTrue(np.isfinite(run["temperature"][written]).all())
                     self.assertTrue((run["step"][written] < step).all())
+                    listed = (folder / "run.xdmf").read_text()
+                    for frame in np.flatnonzero(written):
+                        self.assertIn(f"/frame/temperature/{frame}<", listed)
                 report_command = self.kiln("report", folder)
                 self.assertEqual(report_command.status, 0)
                 self.assertIn("diverged: step", report_command.stdout)

@@ -78,10 +78,10 @@ class Assembly {
     for (const auto& observer : observers_) observer->begin();
   }
 
-  LoopTotals march() {
+  void march(LoopTotals& totals) {
     std::vector<Observer*> observers;
     for (const auto& observer : observers_) observers.push_back(observer.get());
-    return run_time_loop(*method_, *scheme_, x_, span_, observers);
+    run_time_loop(*method_, *scheme_, x_, span_, observers, totals);
   }
 
   void finish(RunReport& report) {
@@ -146,7 +146,8 @@ auto located(const Input& input, Build&& build) {
 
 void report_solve(RunReport& report, const LoopTotals& totals) {
   const double steps = std::max(totals.steps, 1);
-  report.section("solve") = {{"residuals", totals.residuals},
+  report.section("solve") = {{"steps", totals.steps},
+                             {"residuals", totals.residuals},
                              {"residuals_per_step", static_cast<double>(totals.residuals) / steps},
                              {"iterations", totals.iterations},
                              {"iterations_per_step", static_cast<double>(totals.iterations) / steps},
@@ -281,7 +282,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   const Stopwatch loop;
   LoopTotals totals;
   try {
-    totals = assembly->march();
+    assembly->march(totals);
   } catch (const DivergenceError& error) {
     facts["status"] = fmt::format("diverged: {}", error.what());
     failure = std::current_exception();
@@ -295,7 +296,13 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   }
   const Seconds stepping = elapsed(loop, *communicator);
   report_solve(report, totals);
-  assembly->finish(report);
+  try {
+    assembly->finish(report);
+  } catch (const std::exception& error) {
+    // Why the run ended matters more than what could not be written after it.
+    if (failure == nullptr) throw;
+    facts["status"] = fmt::format("{}; then {}", facts["status"].get<std::string>(), error.what());
+  }
   const Seconds all = elapsed(total, *communicator);
   report.section("time") = {{"setup_wall_s", setup.wall},        {"setup_cpu_s", setup.cpu},
                             {"loop_wall_s", stepping.wall},      {"loop_cpu_s", stepping.cpu},

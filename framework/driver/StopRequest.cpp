@@ -10,6 +10,11 @@ volatile std::sig_atomic_t signal_that_came = 0;
 
 extern "C" void note_signal(int number) { signal_that_came = number; }
 
+void watch(int signal, const struct sigaction& action, struct sigaction& before) {
+  sigaction(signal, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 SignalWatch::SignalWatch() {
@@ -19,8 +24,8 @@ SignalWatch::SignalWatch() {
   sigemptyset(&action.sa_mask);
   // Once: the second signal does what it does to any program. Interrupted system calls go on.
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-  sigaction(SIGTERM, &action, &terminate_before_);
-  sigaction(SIGINT, &action, &interrupt_before_);
+  watch(SIGTERM, action, terminate_before_);
+  watch(SIGINT, action, interrupt_before_);
 }
 
 SignalWatch::~SignalWatch() {
@@ -38,6 +43,13 @@ bool StopRequest::came(int step) {
   Teuchos::reduceAll(communicator_, Teuchos::REDUCE_MIN, 1, &mine, &least);
   interval_.exchanged(step, least);
   return least == 0;
+}
+
+void StopRequest::end_if_asked(const Communicator& communicator, const std::string& what) {
+  const int mine = signal_that_came;
+  int any = 0;
+  Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &mine, &any);
+  if (any != 0) throw Stopped((any == SIGTERM ? "SIGTERM" : "SIGINT") + (" came: stopped " + what));
 }
 
 std::string StopRequest::name() {

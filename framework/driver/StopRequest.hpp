@@ -16,8 +16,9 @@ class Stopped : public std::runtime_error {
 };
 
 /// While it lives, SIGTERM (what batch systems send before they kill) and SIGINT (Ctrl-C) no longer end the program:
-/// they are noted, for the loops to end in order; a second signal of the kind ends the program at once. One at a time,
-/// from before the first file is made until the last is closed.
+/// they are noted, for the loops to end in order; a second signal of the kind ends the program at once. A signal that
+/// was ignored before, as of jobs in the background, stays so. One at a time, from before the first file is made until
+/// the last is closed.
 class SignalWatch {
  public:
   SignalWatch();
@@ -39,6 +40,8 @@ class StopRequest {
 
   /// Whether the loop is to end after this step; the same on every rank. Called after each step. Collective.
   bool came(int step);
+  /// Throws Stopped, naming what was interrupted, if a signal has come to any rank: for work between loops. Collective.
+  static void end_if_asked(const Communicator& communicator, const std::string& what);
   /// "SIGTERM" or "SIGINT"; of a rank that a signal did not reach itself, "a signal".
   static std::string name();
 

@@ -80,9 +80,8 @@ TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
   return span;
 }
 
-LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
-                         const std::vector<Observer*>& observers) {
-  LoopTotals totals;
+void run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+                   const std::vector<Observer*>& observers, LoopTotals& totals) {
   const Communicator& communicator = *method.particles()->getComm();
   Checkpoints checkpoints(span, communicator);
   StopRequest stop(communicator, span.first_step);
@@ -95,6 +94,7 @@ LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const
     try {
       solve = scheme.advance(x, time);
     } catch (const DivergenceError& error) {
+      lap.add_to(totals.stepping_s);
       throw error.at_step(step);
     }
     lap.add_to(totals.stepping_s);
@@ -111,6 +111,12 @@ LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const
                                 span.last_step, time));
     }
   }
+}
+
+LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+                         const std::vector<Observer*>& observers) {
+  LoopTotals totals;
+  run_time_loop(method, scheme, x, span, observers, totals);
   return totals;
 }
 

@@ -31,8 +31,12 @@ struct LoopTotals {
 };
 
 /// Runs a method through its time span. `scheme` is started or restored already and x is the unknown at first_step;
-/// observers see the first moment only when first_step is 0. Adds the step to a DivergenceError. Throws Stopped
-/// (StopRequest.hpp) after a step in which SIGTERM or SIGINT came, with a checkpoint of that step if `span` has any.
+/// observers see the first moment only when first_step is 0. Adds the step to a DivergenceError. While a SignalWatch
+/// lives, throws Stopped (StopRequest.hpp) after the step in which SIGTERM or SIGINT came, or after the first if one
+/// came before, with a checkpoint of that step if `span` has any. Adds to `totals`, also of a run that is cut short.
+void run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+                   const std::vector<Observer*>& observers, LoopTotals& totals);
+/// The same, returning the totals.
 LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
                          const std::vector<Observer*>& observers);
 

@@ -68,6 +68,7 @@ RunFile::RunFile(std::filesystem::path folder, const Map& particles, ConstPositi
   } else {
     create(positions);
   }
+  newest_ = std::make_unique<hdf5::Group>(file_.group("VTKHDF/PointData"));
   file_.flush();
   write_xdmf();
 }
@@ -173,13 +174,12 @@ void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x)
   const std::size_t components = contents_.fields.size();
   const auto particles = static_cast<LocalIndex>(u.extent(0) / components);
   const std::vector<double> slab = order_.slab(matrix_of(u, particles, static_cast<int>(components)));
-  hdf5::Group newest = file_.group("VTKHDF/PointData");
   std::vector<double> values(order_.count());
   for (std::size_t c = 0; c < components; ++c) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = slab[i * components + c];
     const std::string& name = contents_.fields[c].name;
     file_.write_block(name, {frame, order_.first()}, {1, order_.count()}, values);
-    newest.write_block(name, {order_.first()}, {order_.count()}, values);
+    newest_->write_block(name, {order_.first()}, {order_.count()}, values);
   }
   const std::size_t count = root_count();
   if (contents_.coordinates > 0) {
@@ -191,22 +191,27 @@ void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x)
   file_.write_block("step", {frame}, {count}, std::vector<long long>(count, step));
   file_.write_block("time", {frame}, {count}, std::vector<double>(count, time));
   written_.push_back({frame, time});
+  if (xdmf_is_due()) write_xdmf();
+}
+
+bool RunFile::xdmf_is_due() {
   const auto number = static_cast<int>(written_.size());
   // Until the second frame nothing tells the frames' pace.
   if (number == 1) xdmf_interval_ = ExchangeInterval(1);
-  if (number == 1 || frame + 1 == contents_.steps.size()) return write_xdmf();
-  if (!xdmf_interval_.due(number)) return;
-  write_xdmf();
+  if (!xdmf_interval_.due(number)) return false;
   // Its length grows with the frames: writing it after each of very many would take longer than the frames.
   const int mine = std::max(xdmf_interval_.steps_to_come(number), 1 + number / 16);
   int least = mine;
   Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MIN, 1, &mine, &least);
   xdmf_interval_.exchanged(number, least);
+  return number > 2 || least == 1;
 }
 
 void RunFile::write_xdmf() {
+  if (listed_ == written_.size()) return;
   write_atomically(folder_ / "run.xdmf", xdmf("run.h5", order_.rows(), contents_.fields, written_), communicator_,
                    false);
+  listed_ = written_.size();
 }
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,16 +47,20 @@ class RunFile {
   /// Writes the frame of `step`, one of Contents::steps. u: particles × components; x: the method's unknown, looked at
   /// where Contents::coordinates is not 0. Collective.
   void write(int step, double time, ConstVectorView u, ConstVectorView x = {});
-  /// run.xdmf lists all frames so far: written about four times a second at most, it may lag behind. Collective.
+  /// Makes run.xdmf list all frames so far. write() does so only about four times a second, and the less often the more
+  /// frames there are. Collective.
   void write_xdmf();
 
   std::size_t frames_written() const { return written_.size(); }
   std::string path() const { return (folder_ / "run.h5").string(); }
 
  private:
+  static constexpr std::size_t none_listed = static_cast<std::size_t>(-1);
+
   void create(ConstPositionView positions);
   void create_vtkhdf();
   void reopen(int first_step);
+  bool xdmf_is_due();
   std::size_t root_count() const { return communicator_->getRank() == 0 ? 1 : 0; }
 
   std::filesystem::path folder_;
@@ -63,8 +68,10 @@ class RunFile {
   Contents contents_;
   RowOrder order_;
   hdf5::File file_;
+  std::unique_ptr<hdf5::Group> newest_;  ///< VTKHDF/PointData
   std::vector<XdmfFrame> written_;
-  ExchangeInterval xdmf_interval_;  ///< of frames, between two versions of run.xdmf
+  std::size_t listed_ = none_listed;  ///< frames in run.xdmf
+  ExchangeInterval xdmf_interval_;    ///< of frames, between two versions of run.xdmf
 };
 
 }  // namespace kiln

@@ -43,6 +43,9 @@ class Method {
   virtual LocalIndex row_size() const = 0;
   /// x at t = 0.
   virtual void initial(VectorView x) const = 0;
+  /// Forgets what earlier steps have left, as frozen Jacobians and the current time window: what follows is bit by bit
+  /// what it would be with a method just made. Collective.
+  virtual void forget() = 0;
 
   /// Prepares for a step that ends at `time`; steps come in the order of time. Returns whether the rows are others than
   /// before, as where a new time window has a sample mesh of its own: row_size() may have changed, and states and rates

@@ -69,7 +69,6 @@ void FieldObserver::observe(const Moment& moment) {
     context_.method.state(moment.x, u_);
     file_->write(moment.step, moment.time, u_, moment.x);
   }
-  if (moment.checkpoint) file_->write_xdmf();
 }
 
 void FieldObserver::finish(RunReport& report) {

@@ -70,7 +70,8 @@ QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Commu
       own_(communicator_->split(communicator_->getRank(), 0)),
       span_(TimeSpan::of(input)),
       every_(probe_block(input).get<int>("every")) {
-  build_method();
+  method_ = Registry<Method>::create(input_.sublist("method"), {input_, own_});
+  scheme_ = Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), {*method_, span_.step});
   const Teuchos::ParameterList& queries = input.sublist("queries");
   answers_.points = points_of(queries, method_->parameters());
   for (const std::string& name : answers_.points.names) {
@@ -106,19 +107,13 @@ QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Commu
   answers_.outcomes.resize(std::min(count, blocks * (rank + 1) / ranks * together_) - answers_.first);
 }
 
-void QueryRun::build_method() {
-  scheme_.reset();
-  method_.reset();
-  method_ = Registry<Method>::create(input_.sublist("method"), {input_, own_});
-  scheme_ = Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"), {*method_, span_.step});
-}
-
 std::unique_ptr<PointBlock> QueryRun::block(std::size_t first, std::size_t count) {
   return dynamic_cast<AdvancesTogether&>(*method_).point_block(
       {answers_.points.part(first, count), *scheme_, span_.step, places_});
 }
 
 void QueryRun::answer_together(std::size_t first, std::size_t count) {
+  const bool is_last = first + count == answers_.outcomes.size();
   const std::unique_ptr<PointBlock> points = block(answers_.first + first, count);
   const MatrixView told("kiln::queries::probes", count, answers_.width());
   std::size_t recorded = 0;
@@ -138,7 +133,7 @@ void QueryRun::answer_together(std::size_t first, std::size_t count) {
   for (int step = 1; step <= span_.last_step; ++step) {
     points->advance(step, step * span_.step);
     record(step);
-    if (stop.came(step)) throw Stopped(StopRequest::name());
+    if (stop.came(step) && !(is_last && step == span_.last_step)) throw Stopped(StopRequest::name());
   }
   std::copy(points->outcomes().begin(), points->outcomes().end(),
             answers_.outcomes.begin() + static_cast<std::ptrdiff_t>(first));
@@ -146,16 +141,16 @@ void QueryRun::answer_together(std::size_t first, std::size_t count) {
 
 void QueryRun::answer_alone(std::size_t point) {
   // What a method has frozen in one run must not reach the next.
-  build_method();
+  method_->forget();
   answers_.points.set(answers_.first + point, method_->parameters());
-  const Method::Reader reader = method_->reader(places_);
+  if (reader_ == nullptr) reader_ = method_->reader(places_);
   const VectorView told("kiln::queries::probes", answers_.width());
   const VectorView x("kiln::queries::unknown", local_size(*method_->coordinates()));
   std::size_t recorded = 0;
   PointOutcome& outcome = answers_.outcomes[point];
   Recorder recorder(outcome, [&](int step, ConstVectorView unknown) {
     if (!is_recorded(step)) return;
-    reader(unknown, told);
+    reader_(unknown, told);
     const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), told);
     std::copy_n(host.data(), host.extent(0), answers_.row(point, recorded++));
   });

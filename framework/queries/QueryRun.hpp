@@ -32,7 +32,6 @@ class QueryRun {
   std::size_t diverged() const;
 
  private:
-  void build_method();
   std::unique_ptr<PointBlock> block(std::size_t first, std::size_t count);
   void answer_together(std::size_t first, std::size_t count);
   void answer_alone(std::size_t point);
@@ -44,6 +43,7 @@ class QueryRun {
   int every_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<TimeScheme> scheme_;
+  Method::Reader reader_;           ///< of points one after the other
   std::vector<LocalIndex> places_;  ///< of the probes
   std::size_t together_ = 1;
   QueryAnswers answers_;

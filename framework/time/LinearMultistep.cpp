@@ -122,6 +122,7 @@ void LinearMultistep::keep(Level& level, ConstVectorView x, double time) {
 }
 
 void LinearMultistep::start(ConstVectorView x, double time) {
+  if (static_cast<LocalIndex>(history_.extent(0)) != method_.row_size()) allocate_rows();
   keep(levels_[0], x, time);
   known_ = 1;
 }

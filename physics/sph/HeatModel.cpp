@@ -168,10 +168,13 @@ bool HeatModel::absorbed_holds(double time) const {
       std::equal(absorbed_at_.begin(), absorbed_at_.end() - 1, parameters.begin(), parameters.end(), same)) {
     return true;
   }
-  absorbed_at_.clear();
-  for (const Parameter& parameter : parameters) absorbed_at_.push_back(*parameter.value);
-  absorbed_at_.push_back(time);
   return false;
+}
+
+void HeatModel::remember_absorbed(double time) const {
+  absorbed_at_.clear();
+  for (const Parameter& parameter : heat_source_->parameters().list()) absorbed_at_.push_back(*parameter.value);
+  absorbed_at_.push_back(time);
 }
 
 void HeatModel::update_absorbed(double time) const {
@@ -184,6 +187,7 @@ void HeatModel::update_absorbed(double time) const {
   const auto areas = borrowed(domain_.areas);
   loop(
       absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
+  remember_absorbed(time);
 }
 
 void HeatModel::rate(ConstVectorView u, double time, VectorView of_rows) const {

@@ -81,6 +81,7 @@ class HeatModel final : public Model, public PairwiseModel {
   /// Whether absorbed_ is that of this time and of the source's parameters as they are; if not, it will be. One
   /// evaluation of the source serves all iterations of a step.
   bool absorbed_holds(double time) const;
+  void remember_absorbed(double time) const;
   /// Columns first_column … of `product`, at most Width.
   template <int Width>
   void apply_columns(ConstMatrixView v, MatrixView product, int first_column) const;

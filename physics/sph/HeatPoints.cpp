@@ -63,10 +63,9 @@ class HeatModel::AtPoints final : public PointRates {
 
   /// What a point absorbs does not depend on its state: one evaluation serves all iterations of a step.
   void update_absorbed(double time) {
-    absorbed_time_ = time;
     const auto heated = model_.heated_;
     const auto number = static_cast<LocalIndex>(heated.extent(0));
-    if (number == 0) return;
+    absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t point = 0; point < points_.count(); ++point) {
       points_.set(point, model_.parameters_);
       model_.heat_source_->flux(time, model_.heated_positions_, Kokkos::subview(fluxes_, Kokkos::ALL, point));
@@ -82,6 +81,7 @@ class HeatModel::AtPoints final : public PointRates {
             absorbed(point / lane_count * rows + row, point % lane_count) = fluxes(h, point) * areas(row);
           }
         });
+    absorbed_time_ = time;
   }
 
   void update_states(std::size_t group, const ConstMatrixView& u) {

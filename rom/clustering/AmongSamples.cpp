@@ -20,8 +20,7 @@ Specification AmongSamples::specification() {
 }
 
 AmongSamples::AmongSamples(const Teuchos::ParameterList& list, const NoContext&)
-    : path_(list.name()),
-      fit_{list.get<double>("ridge"), static_cast<std::size_t>(list.get<int>("sources"))} {}
+    : path_(list.name()), fit_{list.get<double>("ridge"), static_cast<std::size_t>(list.get<int>("sources"))} {}
 
 SourceClusters AmongSamples::clusters(const PairWeights& pairs, const SourceMotion&) const {
   const std::size_t rows = pairs.rows.size();

@@ -36,6 +36,11 @@ std::size_t PetrovGalerkin::window_at(double time) const {
   return static_cast<std::size_t>(found - windows_.begin());
 }
 
+void PetrovGalerkin::forget() {
+  for (const OwnedWindow& window : windows_) window.projection->forget_jacobian();
+  current_ = 0;
+}
+
 bool PetrovGalerkin::begin_step(double time) {
   const std::size_t window = window_at(time);
   if (window == current_) return false;

@@ -34,6 +34,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   Teuchos::RCP<const Map> coordinates() const override { return coordinates_; }
   LocalIndex row_size() const override { return projection().row_size(); }
   /// As Projection::initial of the first window.
+  void forget() override;
   void initial(VectorView x) const override { windows_.front().projection->initial(x); }
   bool begin_step(double time) override;
 

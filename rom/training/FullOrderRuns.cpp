@@ -82,9 +82,9 @@ void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
 FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
                              const Settings& settings, const Teuchos::RCP<const Communicator>& communicator) {
   const TimeSpan& span = settings.span;
+  FullOrder method(block, Method::Context{input, communicator});
   for (std::size_t point = 0; point == 0 || point < points_.count(); ++point) {
-    // A method of its own for each run: its frozen Jacobian would tell of the runs before.
-    FullOrder method(block, Method::Context{input, communicator});
+    method.forget();
     if (point == 0) {
       model_ = method.model();
       collect_points(block);

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
+#include "framework/driver/StopRequest.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Seal.hpp"
@@ -108,6 +109,7 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
 void ProcedureTwo::stage(const std::string& name, RunReport& report, const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
   const auto number = report.section("training")["stages"].size() + 1;
+  StopRequest::end_if_asked(*communicator_, fmt::format("before stage {} of the training, {}", number, name));
   if (!quiet_ && communicator_->getRank() == 0) fmt::print(stderr, "training, stage {}: {}\n", number, name);
   work();
   communicator_->barrier();

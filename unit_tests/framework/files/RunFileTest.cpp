@@ -115,6 +115,7 @@ TEST(RunFile, ARestartContinuesTheFile) {
   {
     RunFile file = run.open(whole.path(), 0);
     for (const int step : {0, 2, 4, 5}) run.write(file, step);
+    file.write_xdmf();
   }
   {
     RunFile file = run.open(parts.path(), 0);
@@ -125,6 +126,7 @@ TEST(RunFile, ARestartContinuesTheFile) {
     RunFile file = run.open(parts.path(), 3);
     EXPECT_EQ(file.frames_written(), 2u);
     for (const int step : {4, 5}) run.write(file, step);
+    file.write_xdmf();
   }
   const auto expected = hdf5::File::read(whole / "run.h5", world());
   const auto found = hdf5::File::read(parts / "run.h5", world());

@@ -118,11 +118,15 @@ TEST(ProbeObserver, WritesEverySoManyStepsAndTheLastOne) {
 TEST(ProbeObserver, HasItsRowsOnDiskWhenACheckpointIsWritten) {
   TestFolder folder;
   StandInMethod method;
-  ProbeObserver observer(probe_list({{"one", {0, 0, 0}}}, 3), context_of(method, folder));
-  run(observer, method, 0, 4);
-  observer.observe({5, last_step, 5 * step_length, method.unknown(5), {}, true});
+  ProbeObserver observer(probe_list({{"one", {0, 0, 0}}}), context_of(method, folder));
+  run(observer, method, 0, 5);
+  // Steps 2 to 5 wait until the ranks exchange again.
   world()->barrier();
   EXPECT_EQ(read_csv(folder / "probes.csv").rows.size(), 2u);
+  world()->barrier();
+  observer.observe({6, last_step, 6 * step_length, method.unknown(6), {}, true});
+  world()->barrier();
+  EXPECT_EQ(read_csv(folder / "probes.csv").rows.size(), 7u);
   world()->barrier();
 }
 
@@ -138,7 +142,7 @@ TEST(ProbeObserver, ARestartCutsLaterRowsAndContinues) {
   }
   {
     ProbeObserver observer(list, context_of(method, parts));
-    run(observer, method, 0, 5, 3);
+    run(observer, method, 0, 5, 5);
   }
   world()->barrier();
   // A killed program may leave half a row.
@@ -215,6 +219,24 @@ TEST(FieldObserver, WritesEverySoManyStepsAndTheLastOne) {
   EXPECT_EQ(file.text("method"), "fom");
   EXPECT_EQ(file.text("ranks"), std::to_string(world()->getSize()));
   EXPECT_FALSE(file.text("commit").empty());
+}
+
+/// However fast the frames come, and although the last one of the run is not reached.
+TEST(FieldObserver, ListsAllFramesForParaViewAtTheEnd) {
+  TestFolder folder;
+  StandInMethod method;
+  Teuchos::ParameterList list("output.fields");
+  list.set("every", 1);
+  RunReport report;
+  FieldObserver observer(list, context_of(method, folder));
+  run(observer, method, 0, 5);
+  observer.finish(report);
+  world()->barrier();
+  const std::string xdmf = contents_of(folder / "run.xdmf");
+  for (int step = 0; step <= 5; ++step) {
+    EXPECT_NE(xdmf.find("/frame/temperature/" + std::to_string(step)), std::string::npos) << step;
+  }
+  world()->barrier();
 }
 
 TEST(FieldObserver, ARestartContinues) {
@@ -294,7 +316,7 @@ TEST(Extremes, ARestartKeepsEarlierRows) {
   uninterrupted.finish(report_whole);
   {
     Extremes interrupted(list, context_of(method, parts));
-    run(interrupted, method, 0, 5, 3);
+    run(interrupted, method, 0, 5, 5);
   }
   world()->barrier();
   Extremes continued(list, context_of(method, parts, 3));

@@ -67,6 +67,7 @@ class StandInMethod : public Method {
   Teuchos::RCP<const Map> coordinates() const override { return degree_of_freedom_map(map_, 2); }
   bool begin_step(double) override { throw NotOffered("StandInMethod", "begin_step"); }
   LocalIndex row_size() const override { throw NotOffered("StandInMethod", "row_size"); }
+  void forget() override { throw NotOffered("StandInMethod", "forget"); }
   void initial(VectorView) const override { throw NotOffered("StandInMethod", "initial"); }
   void evaluate(ConstVectorView, double, VectorView, VectorView) override {
     throw NotOffered("StandInMethod", "evaluate");
