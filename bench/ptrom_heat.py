@@ -25,7 +25,7 @@ def compared(case, full, reduction):
     return {
         **found,
         "sources_ratio": method["sources_ratio"],
-        "distinct_sources_ratio": method["sources"] / method["gnat_sources"],
+        "pairs_ratio": method["pairs_ratio"],
         "time_ratio": gnat["online_s"] / ptrom["online_s"],
         "cpu_time_ratio": gnat["online_cpu_s"] / ptrom["online_cpu_s"],
         "error_ratio": ptrom["worst_probe_error_percent"] / gnat["worst_probe_error_percent"],

@@ -10,12 +10,12 @@ namespace kiln {
 
 Specification AmongSamples::specification() {
   Specification s;
-  s.integer("sources", "most sources of a row; multiples of 8 fill the lanes of vectors").at_least(1).defaults_to(16);
+  s.integer("sources", "most sources of a row").at_least(1).defaults_to(12);
   s.real("ridge",
          "how strongly the fit of weights holds to small ones: more is steadier away from the training, less is closer "
          "to it")
       .above(0)
-      .defaults_to(1e-3);
+      .defaults_to(0.005);
   return s;
 }
 

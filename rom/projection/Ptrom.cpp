@@ -52,8 +52,9 @@ class Ptrom : public HyperReduced {
     });
     made.facts["pairs"] = pairs;
     made.facts["gnat_pairs"] = gnat_pairs;
-    made.facts["sources_ratio"] = static_cast<double>(pairs) / static_cast<double>(gnat_pairs);
+    made.facts["pairs_ratio"] = static_cast<double>(pairs) / static_cast<double>(gnat_pairs);
     made.facts["gnat_sources"] = gnat_sources;
+    made.facts["sources_ratio"] = made.facts["sources"].get<double>() / static_cast<double>(gnat_sources);
     made.facts["source_clustering"] = opened.file.clusters(0).text("type");
     return made;
   }

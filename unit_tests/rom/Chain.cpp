@@ -302,7 +302,7 @@ Teuchos::ParameterList input_of(const Case& values) {
     if (values.clustering == "per row") {
       clustering.set("clusters", values.clusters).set("weights", values.cluster_weights);
     } else if (values.clustering == "among samples") {
-      clustering.set("sources", values.clusters).set("ridge", 1e-3);
+      clustering.set("sources", values.clusters).set("ridge", 0.005);
     } else {
       clustering.set("opening", 0.5).set("leaf", 1);
       if (values.clustering == "robust") clustering.set("smooth", 0.0).set("weights", "sums");

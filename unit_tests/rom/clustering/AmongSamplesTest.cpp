@@ -9,7 +9,7 @@ namespace {
 
 AmongSamples among_samples() {
   Teuchos::ParameterList list("reduction.clustering");
-  return AmongSamples(list.set("sources", 16).set("ridge", 1e-3), NoContext{});
+  return AmongSamples(list.set("sources", 16).set("ridge", 0.005), NoContext{});
 }
 
 TEST(AmongSamples, OffersEachRowTheOthers) {

@@ -175,7 +175,8 @@ TEST(Ptrom, SaysWhatItTouches) {
   EXPECT_LE(facts["pairs"], 4 * 20 * 2);
   EXPECT_GE(facts["pairs"], 4 * 20 * 2 - 8);
   EXPECT_GT(facts["gnat_pairs"], 4 * 20 * 3);
-  EXPECT_EQ(facts["sources_ratio"].get<double>(), facts["pairs"].get<double>() / facts["gnat_pairs"].get<double>());
+  EXPECT_EQ(facts["pairs_ratio"].get<double>(), facts["pairs"].get<double>() / facts["gnat_pairs"].get<double>());
+  EXPECT_EQ(facts["sources_ratio"].get<double>(), facts["sources"].get<double>() / gnat["sources"].get<double>());
   EXPECT_LE(facts["sources"], 20 + 20 * 2);
   EXPECT_EQ(report.facts()["training"]["clusters"].size(), 4u);
 }
