@@ -84,6 +84,26 @@ TEST_P(ThreeWindows, HandOverExactly) {
   EXPECT_LT(largest_difference(march(*reduced, values_), exact), 1e-9);
 }
 
+/// With method and scheme of the run before, as queries use them; also where that run ended within a window.
+TEST_P(ThreeWindows, BeginAnewBitByBit) {
+  const int size = 3 * values_.count * values_.components;
+  const auto method = in_three_windows(GetParam().method, values_, world());
+  const auto scheme = Registry<TimeScheme>::create(input_of(values_).sublist("time").sublist("scheme"),
+                                                   TimeScheme::Context{*method, values_.step});
+  const auto run = [&](int steps) {
+    const VectorView x("x", size);
+    method->forget();
+    method->initial(x);
+    scheme->start(x, 0.0);
+    run_time_loop(*method, *scheme, x, {values_.step, 0, steps}, {});
+    return std::vector<double>(x.data(), x.data() + size);
+  };
+  const std::vector<double> first = run(25);
+  EXPECT_EQ(run(25), first);
+  run(17);
+  EXPECT_EQ(run(25), first);
+}
+
 TEST_P(ThreeWindows, RestartBitByBit) {
   const int size = 3 * values_.count * values_.components;
   // Within a window, at its end, and a step later.
