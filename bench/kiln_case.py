@@ -8,10 +8,10 @@ from run_folder import RunFolder
 # An online run takes milliseconds: the middle of several stands for one.
 ONLINE_RUNS = 5
 # One basis for the whole run: the wake of a beam that crosses the whole part (Experiments 3 and 4) takes more modes, more
-# than the sampled particles could tell each other's sums by few weights.
+# than few of the sampled particles could tell the others' sums with.
 GLOBAL = {
-    1: (60, 90, 150, "{type: among samples}"),
-    2: (60, 90, 150, "{type: among samples}"),
+    1: (60, 90, 150, "{type: among samples, sources: 32}"),
+    2: (60, 90, 150, "{type: among samples, sources: 32}"),
     3: (90, 150, 250, "{type: per row, clusters: 8}"),
     4: (90, 180, 300, "{type: per row, clusters: 8}"),
 }
