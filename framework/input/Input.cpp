@@ -105,7 +105,7 @@ Input Input::read(const std::string& file, const std::vector<std::string>& overr
       on_every_rank(communicator, files, [&](InputFiles& known) { return check(file, parsed, specification, known); });
   Input input;
   input.file_ = file;
-  input.list_ = std::move(checked.list);
+  input.list_ = checked.list;
   input.list_.setName("");
   input.locations_ = std::move(checked.locations);
   input.data_files_ = std::move(checked.data_files);
