@@ -247,9 +247,11 @@ def text_cases(file, arguments, text, seed):
             (folder / "rubbish.bin").write_bytes(bytes(range(256)) * 8)
             (folder / file).write_bytes(data.replace(b"%FILE%", file.rsplit("/", maxsplit=1)[-1].encode()))
 
-        # A text that no YAML parser may see stops the reading of the file; its name is always told, or that of the file
-        # which it includes, where the fault is there.
-        place = rf"{re.escape(file)}:\d+:\d+: |{re.escape(file)}: |rubbish\.bin:1:1: "
+        # A text that no YAML parser may see stops the reading of the file; its name is always told.
+        place = rf"{re.escape(file)}:\d+:\d+: |{re.escape(file)}: "
+        if what == "binary rubbish included":
+            # There the fault lies, unless a second `include` is found first.
+            place += r"|rubbish\.bin:1:1: "
         yield Case(f"{file}: {what}", write, arguments, place)
 
 

@@ -40,7 +40,7 @@ class Ptrom : public HyperReduced {
       const TimeWindow& time = opened.file.windows()[window];
       const int columns = time.first + time.size;
       const ParticleTable clusters = opened.file.cluster_table(window);
-      const auto sources = static_cast<std::size_t>(group.integer("sources"));
+      const auto sources = static_cast<std::size_t>(count_of_sources(group, mesh.rows.size(), clusters.ids.size()));
       const std::shared_ptr<Model> model = opened.checked(
           full == nullptr ? Registry<Model>::restore(block, {opened.sharing(sources)}, group.group("model"))
                           : built(*full, group),
@@ -57,6 +57,14 @@ class Ptrom : public HyperReduced {
     made.facts["sources_ratio"] = made.facts["sources"].get<double>() / static_cast<double>(gnat_sources);
     made.facts["source_clustering"] = opened.file.clusters(0).text("type");
     return made;
+  }
+
+  static long long count_of_sources(const hdf5::Group& group, std::size_t rows, std::size_t clusters) {
+    const long long count = group.integer("sources");
+    const auto least = static_cast<long long>(rows), most = static_cast<long long>(rows + clusters);
+    if (count >= least && count <= most) return count;
+    throw FileError(group.file(), group.path() + ", attribute sources", fmt::format("{}", count),
+                    fmt::format("{} to {}: the rows, and clusters beside them", least, most));
   }
 
   /// For a model that cannot be rebuilt from a file.

@@ -93,6 +93,8 @@ std::size_t best(const Contributions& brought, const std::vector<bool>& taken, c
 std::vector<double> chosen(const Contributions& brought, const std::vector<double>& wanted, double size,
                            const WeightFit& fit) {
   std::vector<double> factors(brought.size(), 0.0), missing = wanted;
+  // Rows that are all in one state at all moments tell nothing.
+  if (size == 0.0) return factors;
   std::vector<bool> taken(brought.size(), false);
   Contributions kept;
   std::vector<std::size_t> places;
