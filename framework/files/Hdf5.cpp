@@ -50,9 +50,14 @@ std::optional<Fault> not_hdf5(const std::string& path) {
 
 std::shared_ptr<Node> root_of(const std::string& path, const Teuchos::RCP<const Communicator>& communicator,
                               bool parallel, Id id, const std::string& done) {
-  const std::string why = id.valid() ? "" : reason();
-  throw_together(*communicator, path,
-                 id.valid() ? std::nullopt : std::optional<Fault>(Fault{"", "cannot be " + done + why, ""}));
+  std::optional<Fault> fault;
+  if (!id.valid()) {
+    // What vanished while it was being opened HDF5 does not call so.
+    fault =
+        ::access(path.c_str(), F_OK) != 0 ? system_fault(done, errno) : Fault{"", "cannot be " + done + reason(), ""};
+    H5Eclear2(H5E_DEFAULT);
+  }
+  throw_together(*communicator, path, fault);
   const auto file = std::make_shared<OpenFile>(OpenFile{path, communicator, parallel, std::move(id)});
   Id root(H5Gopen2(file->id, "/", H5P_DEFAULT), H5Gclose);
   const auto node = std::make_shared<Node>(Node{file, "/", std::move(root)});
