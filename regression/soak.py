@@ -16,13 +16,13 @@ HERE = Path(__file__).resolve().parent
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--minutes", type=float, default=20.0, help="of fuzzing")
-    parser.add_argument("--kills", type=int, default=20, help="at random moments, and as many again in checkpoints")
+    parser.add_argument("--kills", type=int, default=20, help="at random moments, and as many again while files are written")
     parser.add_argument("--kiln", required=True)
-    parser.add_argument("--killer", help="the library that kills a run within a checkpoint")
+    parser.add_argument("--killer", help="the library that kills a run while it writes")
     parser.add_argument("--folder", type=Path, default=HERE.parent / "build" / "soak")
     options = parser.parse_args()
     kiln = Path(options.kiln).resolve()
-    killer = options.killer or kiln.parent / "regression" / "libkiln_kill_at_checkpoint.so"
+    killer = options.killer or kiln.parent / "regression" / "libkiln_kill_while_writing.so"
     folder = options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     environment = {

@@ -118,6 +118,14 @@ class KillTest(FaultTest):
         survived += 1
         shutil.rmtree(self.folder / into)
 
+    def survive_killing(self, name, variable, number, undisturbed):
+        with self.subTest(**{variable: f"{name}:{number}"}):
+            environment = {"LD_PRELOAD": os.environ["KILN_KILLER"], variable: f"{name}:{number}"}
+            process = self.start(into="killed", environment=environment)
+            self.assertEqual(self.ended(process)[0], -signal.SIGKILL)
+            self.assertTrue((self.folder / "killed" / "fom" / f"{name}.partial").exists())
+            self.survive(undisturbed, "killed")
+
     def test_at_random_moments(self):
         undisturbed = self.undisturbed()
         whole = float("inf")
@@ -148,14 +156,16 @@ class KillTest(FaultTest):
     def test_while_a_checkpoint_is_written(self):
         undisturbed = self.undisturbed()
         chance = random.Random(SEED)
-        in_place = [{"KILN_KILL_AT_CHECKPOINT": str(chance.randrange(1, STEPS // 4))} for _ in range(max(1, KILLS // 4))]
-        in_writing = [{"KILN_KILL_IN_CHECKPOINT": str(chance.randrange(1, 300))} for _ in range(max(2, KILLS // 2))]
-        for k, environment in enumerate(in_place + in_writing):
-            with self.subTest(**environment):
-                process = self.start(into=f"killed-{k}", environment={"LD_PRELOAD": os.environ["KILN_KILLER"], **environment})
-                self.assertEqual(self.ended(process)[0], -signal.SIGKILL)
-                self.assertTrue((self.folder / f"killed-{k}" / "fom" / "checkpoint.h5.partial").exists())
-                self.survive(undisturbed, f"killed-{k}")
+        in_place = [("KILN_KILL_AT", chance.randrange(1, STEPS // 4)) for _ in range(max(1, KILLS // 4))]
+        in_writing = [("KILN_KILL_IN", chance.randrange(1, 300)) for _ in range(max(2, KILLS // 2))]
+        for variable, number in in_place + in_writing:
+            self.survive_killing("checkpoint.h5", variable, number, undisturbed)
+
+    def test_while_the_run_file_is_made(self):
+        undisturbed = self.undisturbed()
+        self.survive_killing("run.h5", "KILN_KILL_AT", 1, undisturbed)
+        for number in range(1, 1 + max(3, KILLS // 2)):
+            self.survive_killing("run.h5", "KILN_KILL_IN", number, undisturbed)
 
     def test_again_and_again(self):
         # One run that is killed at each of its starts comes to the same end.
@@ -200,11 +210,16 @@ class RankTest(FaultTest):
 
 class StopTest(FaultTest):
     def stop(self, number, ranks=1, values=(), into="results"):
-        process = self.start(*values, ranks=ranks, into=into)
-        self.wait_for_checkpoint(process, self.folder / into / "fom", 8)
-        for target in RankTest.children(self, process.pid) if ranks > 1 else [process.pid]:
-            os.kill(target, number)
-        status, message = self.ended(process, 20)
+        # A run that ended before the signal came was not stopped, and another one is taken.
+        for _ in range(8):
+            process = self.start(*values, ranks=ranks, into=into)
+            self.wait_for_checkpoint(process, self.folder / into / "fom", 8)
+            for target in RankTest.children(self, process.pid) if ranks > 1 else [process.pid]:
+                os.kill(target, number)
+            status, message = self.ended(process, 20)
+            if status != 0:
+                break
+            shutil.rmtree(self.folder / into)
         message = "".join(line + "\n" for line in message.splitlines() if " came: stopped" in line)
         self.assertEqual(status, 4, message)
         self.assertRegex(message, rf"^{signal.Signals(number).name} came: stopped after step \d+ of {STEPS}, t = \S+ s; ")
@@ -344,6 +359,7 @@ class DiskTest(FaultTest):
 
         process = self.start(preexec_fn=limit, environment={"PMIX_MCA_gds": "hash"})
         self.refused(process, "results/fom/run.h5", os.strerror(errno.EFBIG), seconds=30)
+        self.assertEqual(list((self.folder / "results" / "fom").glob("run.h5*")), [])
 
     def test_a_limit_that_comes_while_it_runs(self):
         undisturbed = self.undisturbed()

@@ -42,7 +42,7 @@ class CaseTest(KilnTest):
         self.agrees("solve.json", found, "two ranks")
 
     def test_killed_on_one_rank_and_restarted_on_two(self):
-        killer = {"LD_PRELOAD": os.environ["KILN_KILLER"], "KILN_KILL_AT_CHECKPOINT": "2"}
+        killer = {"LD_PRELOAD": os.environ["KILN_KILLER"], "KILN_KILL_AT": "checkpoint.h5:2"}
         # The sanitizers' own libraries would have to come first.
         killer["ASAN_OPTIONS"] = "verify_asan_link_order=0:" + os.environ.get("ASAN_OPTIONS", "")
         killed = self.case.kiln("run", self.folder, "--set", f"output.checkpoint.every={EVERY}", environment=killer)

@@ -200,4 +200,6 @@ void File::require_seal() const {
 
 void File::flush() { node_->require(H5Fflush(node_->file->id, H5F_SCOPE_GLOBAL) >= 0, "", "written"); }
 
+void File::was_renamed(const std::string& path) { node_->file->path = path; }
+
 }  // namespace kiln::hdf5

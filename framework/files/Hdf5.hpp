@@ -113,6 +113,8 @@ class File : public Group {
   void require_seal() const;
   /// Hands everything written so far to the operating system. Throws FileError when the disk refuses; closing cannot.
   void flush();
+  /// Errors call the open file by this name from now on.
+  void was_renamed(const std::string& path);
 
  private:
   using Group::Group;

@@ -27,13 +27,6 @@ std::uint64_t room_for(std::size_t particles, const RunFile::Contents& contents)
          1024 * frames * fields + 65536;
 }
 
-hdf5::File open(const std::filesystem::path& folder, std::size_t particles, const RunFile::Contents& contents,
-                int first_step, const Teuchos::RCP<const Communicator>& communicator) {
-  const std::string path = (folder / "run.h5").string();
-  return first_step > 0 ? hdf5::File::modify(path, communicator)
-                        : hdf5::create_with_room(path, room_for(particles, contents), communicator);
-}
-
 /// A vector of particles × components as a matrix.
 MatrixView matrix_of(ConstVectorView u, LocalIndex particles, int components) {
   MatrixView matrix("kiln::files::frame", static_cast<std::size_t>(particles), static_cast<std::size_t>(components));
@@ -62,47 +55,51 @@ RunFile::RunFile(std::filesystem::path folder, const Map& particles, ConstPositi
       communicator_(std::move(communicator)),
       contents_(std::move(contents)),
       order_(particles),
-      file_(open(folder_, order_.rows(), contents_, first_step, communicator_)) {
-  if (first_step > 0) {
-    reopen(first_step);
-  } else {
-    create(positions);
-  }
-  newest_ = std::make_unique<hdf5::Group>(file_.group("VTKHDF/PointData"));
-  file_.flush();
+      file_(first_step > 0 ? reopened(first_step) : created(positions)),
+      newest_(file_.group("VTKHDF/PointData")) {
   write_xdmf();
 }
 
-void RunFile::create(ConstPositionView positions) {
+hdf5::File RunFile::created(ConstPositionView positions) const {
+  AtomicPath place(path(), communicator_);
+  hdf5::File file = hdf5::create_with_room(place.temporary(), room_for(order_.rows(), contents_), communicator_);
+  fill(file, positions);
+  file.flush();
+  place.commit_unsynchronised();
+  file.was_renamed(path());
+  return file;
+}
+
+void RunFile::fill(hdf5::File& file, ConstPositionView positions) const {
   const std::size_t particles = order_.rows();
   const std::size_t frames = contents_.steps.size();
-  for (const auto& [name, value] : contents_.provenance) file_.attribute(name, value);
-  file_.create_integers("particle", {particles}, -1);
-  file_.write_block("particle", {order_.first()}, {order_.count()}, order_.ids());
-  file_.create_reals("position", {particles, 3}, not_written);
-  file_.write_block("position", {order_.first(), 0}, {order_.count(), 3}, order_.slab(matrix_of(positions)));
-  file_.attribute_of("position", "unit", "m");
-  file_.create_reals("time", {frames}, not_written);
-  file_.attribute_of("time", "unit", "s");
-  file_.create_integers("step", {frames}, -1);
+  for (const auto& [name, value] : contents_.provenance) file.attribute(name, value);
+  file.create_integers("particle", {particles}, -1);
+  file.write_block("particle", {order_.first()}, {order_.count()}, order_.ids());
+  file.create_reals("position", {particles, 3}, not_written);
+  file.write_block("position", {order_.first(), 0}, {order_.count(), 3}, order_.slab(matrix_of(positions)));
+  file.attribute_of("position", "unit", "m");
+  file.create_reals("time", {frames}, not_written);
+  file.attribute_of("time", "unit", "s");
+  file.create_integers("step", {frames}, -1);
   for (const Field& field : contents_.fields) {
-    file_.create_reals(field.name, {frames, particles}, not_written);
-    file_.attribute_of(field.name, "unit", field.unit);
+    file.create_reals(field.name, {frames, particles}, not_written);
+    file.attribute_of(field.name, "unit", field.unit);
   }
   if (contents_.coordinates > 0) {
-    file_.create_reals("coordinates", {frames, contents_.coordinates}, not_written);
-    file_.attribute_of("coordinates", "unit", "1");
+    file.create_reals("coordinates", {frames, contents_.coordinates}, not_written);
+    file.attribute_of("coordinates", "unit", "1");
   }
-  hdf5::Group views = file_.create_group("frame");
+  hdf5::Group views = file.create_group("frame");
   for (const Field& field : contents_.fields) views.create_group(field.name).create_row_views("/" + field.name);
-  create_vtkhdf();
+  fill_vtkhdf(file);
 }
 
 /// VTK's own file format: an unstructured grid with one vertex cell a particle.
-void RunFile::create_vtkhdf() {
+void RunFile::fill_vtkhdf(hdf5::File& file) const {
   constexpr unsigned char vertex = 1;  // VTK_VERTEX
   const std::size_t particles = order_.rows();
-  hdf5::Group group = file_.create_group("VTKHDF");
+  hdf5::Group group = file.create_group("VTKHDF");
   group.attribute("Version", std::vector<long long>{1, 0});
   group.ascii_attribute("Type", "UnstructuredGrid");
   for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"}) {
@@ -122,10 +119,11 @@ void RunFile::create_vtkhdf() {
   for (const Field& field : contents_.fields) data.create_reals(field.name, {particles}, not_written);
 }
 
-void RunFile::reopen(int first_step) {
+hdf5::File RunFile::reopened(int first_step) {
+  hdf5::File file = hdf5::File::modify(path(), communicator_);
   const std::size_t particles = order_.rows();
   const std::size_t frames = contents_.steps.size();
-  const std::vector<long long> ids = file_.integers("particle", {particles}).values;
+  const std::vector<long long> ids = file.integers("particle", {particles}).values;
   const bool same =
       std::equal(order_.ids().begin(), order_.ids().end(), ids.begin() + static_cast<std::ptrdiff_t>(order_.first()));
   throw_together(*communicator_, path(),
@@ -133,7 +131,7 @@ void RunFile::reopen(int first_step) {
                       : std::optional<Fault>(Fault{"/particle", "holds other particles than this run",
                                                    "the file that the interrupted run left"}));
   for (const Field& field : contents_.fields) {
-    const std::vector<std::size_t> shape = file_.shape(field.name);
+    const std::vector<std::size_t> shape = file.shape(field.name);
     if (shape != std::vector<std::size_t>{frames, particles}) {
       throw FileError(path(), "/" + field.name, fmt::format("has shape {}", fmt::join(shape, " × ")),
                       fmt::format("{} frames × {} particles; continue with the end time and the output interval of the "
@@ -141,8 +139,8 @@ void RunFile::reopen(int first_step) {
                                   frames, particles));
     }
   }
-  std::vector<double> times = file_.reals("time", {frames}).values;
-  std::vector<long long> steps = file_.integers("step", {frames}).values;
+  std::vector<double> times = file.reals("time", {frames}).values;
+  std::vector<long long> steps = file.integers("step", {frames}).values;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     const bool known = steps[frame] == -1 || steps[frame] == contents_.steps[frame];
     if (!known) {
@@ -161,8 +159,10 @@ void RunFile::reopen(int first_step) {
   const std::size_t count = root_count() * frames;
   times.resize(count);
   steps.resize(count);
-  file_.write_block("time", {0}, {count}, times);
-  file_.write_block("step", {0}, {count}, steps);
+  file.write_block("time", {0}, {count}, times);
+  file.write_block("step", {0}, {count}, steps);
+  file.flush();
+  return file;
 }
 
 void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x) {
@@ -179,7 +179,7 @@ void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x)
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = slab[i * components + c];
     const std::string& name = contents_.fields[c].name;
     file_.write_block(name, {frame, order_.first()}, {1, order_.count()}, values);
-    newest_->write_block(name, {order_.first()}, {order_.count()}, values);
+    newest_.write_block(name, {order_.first()}, {order_.count()}, values);
   }
   const std::size_t count = root_count();
   if (contents_.coordinates > 0) {

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,8 +26,9 @@ namespace kiln {
 /// | `/frame/FIELD/K` | n | row K of `/FIELD`; a view, for readers of XDMF |
 /// | `/VTKHDF` | | particles and the newest frame, for VTK ≥ 9.1 |
 ///
-/// Each dataset has an attribute `unit`; the root's attributes are the run's provenance. All space is taken at the
-/// start and no metadata changes later, so a run that is killed leaves a file that can be read.
+/// Each dataset has an attribute `unit`; the root's attributes are the run's provenance. The file gets its name when
+/// all space is taken and all metadata written, none of which changes later: a run that is killed leaves a file that
+/// can be read.
 class RunFile {
  public:
   struct Contents {
@@ -57,9 +57,12 @@ class RunFile {
  private:
   static constexpr std::size_t none_listed = static_cast<std::size_t>(-1);
 
-  void create(ConstPositionView positions);
-  void create_vtkhdf();
-  void reopen(int first_step);
+  /// A whole file without frames.
+  hdf5::File created(ConstPositionView positions) const;
+  void fill(hdf5::File& file, ConstPositionView positions) const;
+  void fill_vtkhdf(hdf5::File& file) const;
+  /// The file of an interrupted run, without the frames after `first_step`; written_ lists the others.
+  hdf5::File reopened(int first_step);
   bool xdmf_is_due();
   std::size_t root_count() const { return communicator_->getRank() == 0 ? 1 : 0; }
 
@@ -67,11 +70,11 @@ class RunFile {
   Teuchos::RCP<const Communicator> communicator_;
   Contents contents_;
   RowOrder order_;
-  hdf5::File file_;
-  std::unique_ptr<hdf5::Group> newest_;  ///< VTKHDF/PointData
   std::vector<XdmfFrame> written_;
   std::size_t listed_ = none_listed;  ///< frames in run.xdmf
   ExchangeInterval xdmf_interval_;    ///< of frames, between two versions of run.xdmf
+  hdf5::File file_;
+  hdf5::Group newest_;  ///< VTKHDF/PointData
 };
 
 }  // namespace kiln

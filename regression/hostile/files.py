@@ -4,6 +4,7 @@ Damage of two kinds: bytes that change, which a seal or a parser must notice, an
 (another shape, type or value under a seal of its own), which the reader's own checks must notice."""
 
 import json
+import os
 import random
 import re
 import shutil
@@ -383,7 +384,7 @@ def table_changes(header):
 
 def table_cases():
     """Tables of numbers: particles, materials, points of queries."""
-    for file, arguments, header in (("cloud.csv", CLOUD, b"x,y,z,volume,area"), ("steel.csv", TABLE, b"temperature"),
+    for file, arguments, header in (("cloud.csv", CLOUD, b"x,y,z,volume,area"), ("steel.csv", TABLE, b"temperature,conductivity,specific heat,density"),
                                     ("points.csv", QUERIES, b"heat_source")):  # fmt: skip
         place = re.escape(file)
 
@@ -392,8 +393,6 @@ def table_cases():
         yield Case(f"{file}: a folder", lambda folder, file=file: ((folder / file).unlink(), (folder / file).mkdir()), arguments, place)
         yield Case(f"{file}: missing", lambda folder, file=file: (folder / file).unlink(), arguments, place)
         yield Case(f"{file}: a device", lambda folder, file=file: ((folder / file).unlink(), (folder / file).symlink_to("/dev/zero")), arguments, place)
-        import os
-
         yield Case(f"{file}: a pipe", lambda folder, file=file: ((folder / file).unlink(), os.mkfifo(folder / file)), arguments, place)
         yield Case(f"{file}: an HDF5 file", lambda folder, file=file: shutil.copy(folder / "cloud.h5", folder / file), arguments, place)
 

@@ -169,7 +169,7 @@ def try_all(kiln, cases, shared, jobs=2, out=sys.stdout, keep=None):
             if keep is not None:
                 target = Path(keep) / re.sub(r"[^\w.-]+", "_", verdict.case.name)
                 shutil.rmtree(target, ignore_errors=True)
-                target.mkdir(parents=True)
+                shutil.copytree(shared, target, symlinks=True)
                 verdict.case.write(target)
     print(
         f"{totals.tried} broken, {len(cases) - totals.tried} others; {len(totals.failures)} ended badly, "

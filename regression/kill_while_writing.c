@@ -1,6 +1,6 @@
 /* Preloaded into a run, kills it at a moment of the test's choice, however fast the run is:
-   KILN_KILL_AT_CHECKPOINT=N  when it is about to put its Nth checkpoint in place (1 is the first);
-   KILN_KILL_IN_CHECKPOINT=N  in the middle of the Nth piece that it writes into a checkpoint. */
+   KILN_KILL_AT=checkpoint.h5:N  when it is about to put its Nth file of that name in place (1 is the first);
+   KILN_KILL_IN=checkpoint.h5:N  in the middle of the Nth piece that it writes into such files. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <signal.h>
@@ -15,24 +15,32 @@ static int ends_with(const char* text, const char* end) {
   return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
+/* Whether this is the Nth call for a path that ends in /NAME and `suffix`, where `variable` holds NAME:N. */
+static int is_due(const char* variable, const char* path, const char* suffix, int* count) {
+  const char* wanted = getenv(variable);
+  const char* colon = wanted == NULL ? NULL : strchr(wanted, ':');
+  char end[256];
+  if (colon == NULL) return 0;
+  snprintf(end, sizeof end, "/%.*s%s", (int)(colon - wanted), wanted, suffix);
+  return ends_with(path, end) && ++*count == atoi(colon + 1);
+}
+
 int rename(const char* from, const char* to) {
   static int count = 0;
-  const char* last = getenv("KILN_KILL_AT_CHECKPOINT");
-  if (last != NULL && ends_with(to, "/checkpoint.h5") && ++count == atoi(last)) raise(SIGKILL);
+  if (is_due("KILN_KILL_AT", to, "", &count)) raise(SIGKILL);
   int (*system_rename)(const char*, const char*) = (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
   return system_rename(from, to);
 }
 
 static int is_the_piece(int descriptor) {
   static int count = 0;
-  const char* last = getenv("KILN_KILL_IN_CHECKPOINT");
   char link[64], name[4096];
-  if (last == NULL) return 0;
+  if (getenv("KILN_KILL_IN") == NULL) return 0;
   snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
   const ssize_t length = readlink(link, name, sizeof name - 1);
   if (length <= 0) return 0;
   name[length] = '\0';
-  return ends_with(name, "/checkpoint.h5.partial") && ++count == atoi(last);
+  return is_due("KILN_KILL_IN", name, ".partial", &count);
 }
 
 typedef ssize_t (*Pwrite)(int, const void*, size_t, off64_t);
