@@ -7,25 +7,20 @@ from run_folder import RunFolder
 
 # An online run takes milliseconds: the middle of several stands for one.
 ONLINE_RUNS = 5
-# One basis for the whole run: the wake of a beam that crosses the whole part (Experiments 3 and 4) takes more modes, more
-# than few of the sampled particles could tell the others' sums with.
+# One basis for the whole run: the wake of a beam that crosses the whole part (Experiments 3 and 4) takes more modes.
 GLOBAL = {
-    1: (60, 90, 150, "{type: among samples, sources: 32}"),
-    2: (60, 90, 150, "{type: among samples, sources: 32}"),
-    3: (90, 150, 250, "{type: per row, clusters: 8}"),
-    4: (90, 180, 300, "{type: per row, clusters: 8}"),
+    1: (60, 90, 140, 16),
+    2: (60, 90, 140, 16),
+    3: (70, 100, 160, 16),
+    4: (90, 180, 304, 32),
 }
 
 
 def global_setting(experiment):
-    rank, residual_rank, samples, clustering = GLOBAL[experiment]
+    rank, residual_rank, samples, sources = GLOBAL[experiment]
     return ["reduction.windows.count=1", f"reduction.basis.rank={rank}",
             f"reduction.residual_basis.rank={residual_rank}", f"reduction.sampling.samples={samples}",
-            f"reduction.clustering={clustering}"]
-
-
-# Factors of so large a basis cost as much as many steps: they serve longer.
-GLOBAL_ONLINE = ("time.newton.refresh=50",)
+            f"reduction.clustering={{type: among samples, sources: {sources}}}"]
 
 
 class KilnCase:

@@ -1,21 +1,21 @@
 """The four experiments, full order against GNAT and PTROM, in windows and with one global basis; training in full-order runs."""
 import sys
 
-from kiln_case import GLOBAL_ONLINE, KilnCase, figure, global_setting
+from kiln_case import KilnCase, figure, global_setting
 from summary import compare_runs
 
 RUNS = 5
 
 
 def measure(case, settings):
-    """Figures of `settings` (name → method, reduction file and changes of the input), each run after each full-order run."""
+    """Figures of `settings` (name → method and reduction file), each run after each full-order run."""
     wall, cpu = {name: [] for name in settings}, {name: [] for name in settings}
     seconds, comparison = [], {}
     for _ in range(RUNS):
         full = case.full_order()
         seconds.append(full.report["time"]["loop_wall_s"])
-        for name, (method, reduction, *changes) in settings.items():
-            run, online_wall, online_cpu = case.online(reduction, method, *changes)
+        for name, (method, reduction) in settings.items():
+            run, online_wall, online_cpu = case.online(reduction, method)
             wall[name].append(seconds[-1] / online_wall)
             cpu[name].append(full.report["time"]["loop_cpu_s"] / online_cpu)
             comparison[name] = compare_runs(full, run, reduction)
@@ -37,8 +37,8 @@ def figures(bench):
         one_basis, _ = case.train("global", *global_setting(number))
         own, seconds = measure(case, {f"online.experiment_{number}": ("ptrom", windows),
                                       f"online.gnat.experiment_{number}": ("gnat", windows),
-                                      f"online.global.experiment_{number}": ("ptrom", one_basis, *GLOBAL_ONLINE),
-                                      f"online.global.gnat.experiment_{number}": ("gnat", one_basis, *GLOBAL_ONLINE)})
+                                      f"online.global.experiment_{number}": ("ptrom", one_basis),
+                                      f"online.global.gnat.experiment_{number}": ("gnat", one_basis)})
         result += own
         result.append(figure(f"online.experiment_{number}.full_order_s", seconds, "s"))
         result.append(figure(f"train.experiment_{number}.in_fom_runs", [training / value for value in seconds]))

@@ -23,6 +23,19 @@ inline void store_lanes(double* numbers, const Lanes& lanes) { __builtin_memcpy(
 
 inline Lanes all_lanes(double x) { return Lanes{x, x, x, x, x, x, x, x}; }
 
+/// The first and the second of each three numbers, of eight triples one after the other.
+struct FirstTwoLanes {
+  Lanes first;
+  Lanes second;
+};
+inline FirstTwoLanes first_two_of_triples(const double* triples) {
+  const Lanes a = lanes_at(triples), b = lanes_at(triples + lane_count), c = lanes_at(triples + 2 * lane_count);
+  const Lanes first = __builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, 0, 0);
+  const Lanes second = __builtin_shufflevector(a, b, 1, 4, 7, 10, 13, 0, 0, 0);
+  return {__builtin_shufflevector(first, c, 0, 1, 2, 3, 4, 5, 10, 13),
+          __builtin_shufflevector(second, c, 0, 1, 2, 3, 4, 8, 11, 14)};
+}
+
 inline double lane_sum(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
 
 }  // namespace kiln

@@ -28,6 +28,8 @@ Id access_properties(const Communicator& communicator, bool parallel) {
   Id properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   // A file that a run is writing may be looked at meanwhile; the run's folder is what keeps a second run out.
   H5Pset_file_locking(properties, false, true);
+  // What is written goes to the system at once: a program that is killed must not take small blocks with it.
+  H5Pset_sieve_buf_size(properties, 0);
   if (parallel) H5Pset_fapl_mpio(properties, mpi_communicator(communicator), MPI_INFO_NULL);
   return properties;
 }

@@ -11,6 +11,23 @@
 namespace kiln::hdf5 {
 
 struct Node;
+struct Dataset;
+
+/// A dataset that is kept open, for many blocks: opening it takes longer than writing a small one.
+class OpenedDataset {
+ public:
+  OpenedDataset(std::shared_ptr<Node> node, std::string name);
+  /// As Group::write_block. Collective.
+  void write_block(const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
+                   const std::vector<double>& values);
+  void write_block(const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
+                   const std::vector<long long>& values);
+
+ private:
+  std::shared_ptr<Node> node_;
+  std::string name_;
+  std::shared_ptr<Dataset> dataset_;
+};
 
 template <class T>
 struct Array {
@@ -91,6 +108,7 @@ class Group {
                    const std::vector<std::size_t>& count, const std::vector<double>& values);
   void write_block(const std::string& name, const std::vector<std::size_t>& start,
                    const std::vector<std::size_t>& count, const std::vector<long long>& values);
+  OpenedDataset opened(const std::string& name) const;
   /// Reads this rank's block of a dataset of floating-point numbers.
   std::vector<double> read_block(const std::string& name, const std::vector<std::size_t>& start,
                                  const std::vector<std::size_t>& count) const;

@@ -43,9 +43,13 @@ Selection select(const Dataset& dataset, const std::vector<std::size_t>& start, 
   return selection;
 }
 
-Id transfer_properties(const Node& node) {
+/// Ranks agree on how a large dataset is moved, piece by piece; for a small one that takes longer than moving it.
+Id transfer_properties(const Node& node, const Dataset& dataset) {
+  constexpr std::size_t large = 1 << 20;
   Id properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-  if (node.file->parallel) H5Pset_dxpl_mpio(properties, H5FD_MPIO_COLLECTIVE);
+  if (node.file->parallel && product(dataset.shape) * sizeof(double) >= large) {
+    H5Pset_dxpl_mpio(properties, H5FD_MPIO_COLLECTIVE);
+  }
   return properties;
 }
 
@@ -191,8 +195,8 @@ std::vector<double> read_slab(const Node& node, const Dataset& dataset, const st
   check_values(node, dataset, name);
   const Selection selection = select(dataset, start, count);
   std::vector<double> values(product(count));
-  const bool read = H5Dread(dataset.id, H5T_NATIVE_DOUBLE, selection.memory, selection.file, transfer_properties(node),
-                            values.data()) >= 0;
+  const bool read = H5Dread(dataset.id, H5T_NATIVE_DOUBLE, selection.memory, selection.file,
+                            transfer_properties(node, dataset), values.data()) >= 0;
   node.require(read, name, "read");
   return values;
 }
@@ -203,7 +207,7 @@ void write_slab(const Node& node, const Dataset& dataset, const std::string& nam
   check_block(node, dataset, name, start, count);
   const Selection selection = select(dataset, start, count);
   const bool written =
-      H5Dwrite(dataset.id, type, selection.memory, selection.file, transfer_properties(node), values) >= 0;
+      H5Dwrite(dataset.id, type, selection.memory, selection.file, transfer_properties(node, dataset), values) >= 0;
   node.require(written, name, "written");
 }
 
@@ -295,6 +299,22 @@ void Group::link(const std::string& name, const std::string& target) {
       H5Lcreate_hard(node_->file->id, target.c_str(), node_->id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
   node_->require(linked >= 0, name, "linked to " + target);
 }
+
+OpenedDataset::OpenedDataset(std::shared_ptr<Node> node, std::string name)
+    : node_(std::move(node)),
+      name_(std::move(name)),
+      dataset_(std::make_shared<Dataset>(open_dataset(*node_, name_))) {}
+
+void OpenedDataset::write_block(const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
+                                const std::vector<double>& values) {
+  write_slab(*node_, *dataset_, name_, start, count, H5T_NATIVE_DOUBLE, values.data());
+}
+void OpenedDataset::write_block(const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
+                                const std::vector<long long>& values) {
+  write_slab(*node_, *dataset_, name_, start, count, H5T_NATIVE_LLONG, values.data());
+}
+
+OpenedDataset Group::opened(const std::string& name) const { return {node_, name}; }
 
 void Group::write_block(const std::string& name, const std::vector<std::size_t>& start,
                         const std::vector<std::size_t>& count, const std::vector<double>& values) {

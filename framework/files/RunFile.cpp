@@ -56,7 +56,14 @@ RunFile::RunFile(std::filesystem::path folder, const Map& particles, ConstPositi
       contents_(std::move(contents)),
       order_(particles),
       file_(first_step > 0 ? reopened(first_step) : created(positions)),
-      newest_(file_.group("VTKHDF/PointData")) {
+      times_(file_.opened("time")),
+      steps_(file_.opened("step")) {
+  const hdf5::Group newest = file_.group("VTKHDF/PointData");
+  for (const Field& field : contents_.fields) {
+    fields_.push_back(file_.opened(field.name));
+    newest_.push_back(newest.opened(field.name));
+  }
+  if (contents_.coordinates > 0) coordinates_ = file_.opened("coordinates");
   write_xdmf();
 }
 
@@ -177,19 +184,18 @@ void RunFile::write(int step, double time, ConstVectorView u, ConstVectorView x)
   std::vector<double> values(order_.count());
   for (std::size_t c = 0; c < components; ++c) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = slab[i * components + c];
-    const std::string& name = contents_.fields[c].name;
-    file_.write_block(name, {frame, order_.first()}, {1, order_.count()}, values);
-    newest_.write_block(name, {order_.first()}, {order_.count()}, values);
+    fields_[c].write_block({frame, order_.first()}, {1, order_.count()}, values);
+    newest_[c].write_block({order_.first()}, {order_.count()}, values);
   }
   const std::size_t count = root_count();
-  if (contents_.coordinates > 0) {
+  if (coordinates_) {
     const auto coordinates = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), x);
     const std::vector<double> row(coordinates.data(), coordinates.data() + count * contents_.coordinates);
-    file_.write_block("coordinates", {frame, 0}, {count, count * contents_.coordinates}, row);
+    coordinates_->write_block({frame, 0}, {count, count * contents_.coordinates}, row);
   }
   // The time comes last: it says that the frame is whole.
-  file_.write_block("step", {frame}, {count}, std::vector<long long>(count, step));
-  file_.write_block("time", {frame}, {count}, std::vector<double>(count, time));
+  steps_.write_block({frame}, {count}, std::vector<long long>(count, step));
+  times_.write_block({frame}, {count}, std::vector<double>(count, time));
   written_.push_back({frame, time});
   if (xdmf_is_due()) write_xdmf();
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,7 +75,10 @@ class RunFile {
   std::size_t listed_ = none_listed;  ///< frames in run.xdmf
   ExchangeInterval xdmf_interval_;    ///< of frames, between two versions of run.xdmf
   hdf5::File file_;
-  hdf5::Group newest_;  ///< VTKHDF/PointData
+  hdf5::OpenedDataset times_, steps_;
+  std::vector<hdf5::OpenedDataset> fields_;
+  std::vector<hdf5::OpenedDataset> newest_;         ///< VTKHDF/PointData
+  std::optional<hdf5::OpenedDataset> coordinates_;  ///< of reduced methods
 };
 
 }  // namespace kiln

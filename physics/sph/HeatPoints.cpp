@@ -63,16 +63,16 @@ class HeatModel::AtPoints final : public PointRates {
 
   /// What a point absorbs does not depend on its state: one evaluation serves all iterations of a step.
   void update_absorbed(double time) {
-    const auto heated = model_.heated_;
+    const auto heated = borrowed(model_.heated_);
     const auto number = static_cast<LocalIndex>(heated.extent(0));
     absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t point = 0; point < points_.count(); ++point) {
       points_.set(point, model_.parameters_);
       model_.heat_source_->flux(time, model_.heated_positions_, Kokkos::subview(fluxes_, Kokkos::ALL, point));
     }
-    const auto absorbed = absorbed_;
-    const auto fluxes = fluxes_;
-    const auto areas = model_.domain_.areas;
+    const auto absorbed = borrowed(absorbed_);
+    const auto fluxes = borrowed(fluxes_);
+    const auto areas = borrowed(model_.domain_.areas);
     const std::size_t rows = model_.row_count(), points = points_.count();
     loop(
         absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) {
@@ -85,9 +85,9 @@ class HeatModel::AtPoints final : public PointRates {
   }
 
   void update_states(std::size_t group, const ConstMatrixView& u) {
-    const auto states = states_;
-    const auto specific_heats = specific_heats_;
-    const auto masses = model_.domain_.masses;
+    const auto states = borrowed(states_);
+    const auto specific_heats = borrowed(specific_heats_);
+    const auto masses = borrowed(model_.domain_.masses);
     const MaterialLookup table = model_.table_;
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
@@ -109,8 +109,8 @@ class HeatModel::AtPoints final : public PointRates {
 
   void sum_pairs(std::size_t group) {
     const PairRows pairs(model_.domain_);
-    const auto states = states_;
-    const auto fluxes = pair_fluxes_;
+    const auto states = borrowed(states_);
+    const auto fluxes = borrowed(pair_fluxes_);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
     loop(
         sums_label, model_.row_count(), KOKKOS_LAMBDA(LocalIndex i) {
@@ -121,11 +121,11 @@ class HeatModel::AtPoints final : public PointRates {
   }
 
   void form_rates(std::size_t group, const MatrixView& f) {
-    const auto states = states_;
-    const auto specific_heats = specific_heats_;
-    const auto absorbed = absorbed_;
-    const auto fluxes = pair_fluxes_;
-    const auto masses = model_.domain_.masses;
+    const auto states = borrowed(states_);
+    const auto specific_heats = borrowed(specific_heats_);
+    const auto absorbed = borrowed(absorbed_);
+    const auto fluxes = borrowed(pair_fluxes_);
+    const auto masses = borrowed(model_.domain_.masses);
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
     loop(

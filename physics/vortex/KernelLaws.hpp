@@ -2,7 +2,7 @@
 
 #include <Kokkos_Core.hpp>
 
-#include "physics/vortex/Exponential.hpp"
+#include "framework/base/Exponential.hpp"
 
 /// The regularised Biot–Savart kernels K(r) = q(|r|²) r⊥/(2π), r⊥ = (−y, x), written for numbers and for Lanes. A law
 /// of one's own has the functions of RosenheadMooreLaw and becomes a component by VortexKernelOf.

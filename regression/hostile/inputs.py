@@ -32,7 +32,7 @@ NOT_NEGATIVE = {
     "smoothing_length", "initial_temperature", "spacing", "samples_per_mode", "together", "hold",
 }  # fmt: skip
 # Keys that take any number, though a shipped input has a whole one there without a unit.
-ANY_NUMBER = {"waves"}
+ANY_NUMBER = {"waves", "samples_per_mode"}
 REQUIRED = {
     "model", "time", "model.type", "model.particles", "model.particles.type", "model.particles.count",
     "model.particles.size", "model.particles.origin", "model.material", "model.initial_temperature", "time.end",

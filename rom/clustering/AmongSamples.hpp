@@ -22,6 +22,8 @@ class AmongSamples : public SourceClustering {
   /// Each row's other rows as clusters of one member. Throws InputError for a single row.
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
   std::optional<WeightFit> weight_fit() const override { return fit_; }
+  /// A row's weights must have seen all modes that pass it, also where one basis serves a whole run.
+  int most_moments() const override { return 400; }
 
  private:
   std::string path_;

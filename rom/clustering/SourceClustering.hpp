@@ -44,6 +44,9 @@ class SourceClustering {
   virtual SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const = 0;
   /// How training is to fit row_weights to the rates that it has met; nothing: not at all.
   virtual std::optional<WeightFit> weight_fit() const = 0;
+  /// How many states of a window, besides its beginning, training shows to clusters() and to the fit at most. Fifty
+  /// tell how far particles come.
+  virtual int most_moments() const { return 50; }
 };
 
 }  // namespace kiln

@@ -79,7 +79,7 @@ class LuFactors {
   void inverse_transposed(const MatrixView& result) const;
 
  private:
-  static constexpr int largest_inverse = 64;
+  static constexpr int largest_inverse = 128;
 
   double reciprocal_condition(double norm);
   /// result = A⁻ᵀ from the factors.

@@ -30,6 +30,7 @@ class PointHistory {
   double gamma() const { return step_ * scheme().beta[0]; }
   /// h of StepResidual for the next step, points by rows × components.
   ConstMatrixView gather();
+  std::size_t levels() const { return levels_.size(); }
   /// Where the next step's result belongs; `accept` makes it the newest level.
   Level& next() { return levels_.back(); }
   void accept();

@@ -20,6 +20,7 @@ ReducedBlock::ReducedBlock(PetrovGalerkin& method, const LinearMultistep& scheme
 
 void ReducedBlock::enter(std::size_t window) {
   window_ = window;
+  whole_levels_ = 0;
   projection_ = std::make_unique<PointProjection>(method_.projection(window), points_);
   told_space_ = method_.held(window).restricted(places_, static_cast<int>(method_.fields().size()));
   told_ = std::make_unique<PointStates>(points_.count(), *told_space_);
@@ -51,6 +52,18 @@ void ReducedBlock::start() {
   history_.accept();
 }
 
+void ReducedBlock::keep_coordinates(const MatrixView& kept) {
+  // Those of windows past are in each level that was written since.
+  const bool all = whole_levels_ < history_.levels();
+  whole_levels_ += all ? 1 : 0;
+  const TrialSpace& space = method_.projection(window_).trial();
+  if (all) {
+    Kokkos::deep_copy(kept, x_);
+  } else {
+    Kokkos::deep_copy(own_coordinates(kept, space), own_coordinates(x_, space));
+  }
+}
+
 void ReducedBlock::advance(int step, double time) {
   if (projection_ == nullptr) throw std::logic_error("ReducedBlock::advance: not started");
   const std::size_t window = method_.window_at(time);
@@ -58,7 +71,7 @@ void ReducedBlock::advance(int step, double time) {
   const ConstMatrixView history = history_.gather();
   PointHistory::Level& next = history_.next();
   projection_->solve({history_.scheme().alpha[0], history_.gamma(), time, {}}, history, x_, next.u, next.f, states_);
-  Kokkos::deep_copy(next.x, x_);
+  keep_coordinates(next.x);
   next.time = time;
   history_.accept();
   for (std::size_t point = 0; point < states_.size(); ++point) {

@@ -27,6 +27,8 @@ class ReducedBlock final : public PointBlock {
  private:
   /// Goes over to another window: its equations, and the history at its rows.
   void enter(std::size_t window);
+  /// Copies x_ into a level of the history.
+  void keep_coordinates(const MatrixView& kept);
 
   PetrovGalerkin& method_;
   ParameterPoints points_;
@@ -34,6 +36,7 @@ class ReducedBlock final : public PointBlock {
   PointHistory history_;
   MatrixView x_;  ///< points × coordinates
   std::size_t window_ = 0;
+  std::size_t whole_levels_ = 0;                 ///< levels written since the window began
   std::unique_ptr<PointProjection> projection_;  ///< of the window
   std::unique_ptr<TrialSpace> told_space_;       ///< likewise, at the places
   std::unique_ptr<PointStates> told_;

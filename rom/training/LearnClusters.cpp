@@ -13,8 +13,6 @@
 namespace kiln {
 namespace {
 
-constexpr int most_moments = 50;
-
 const PairwiseModel& pairwise(const Model& model, const Teuchos::ParameterList& block) {
   const auto* offered = dynamic_cast<const PairwiseModel*>(&model);
   if (offered != nullptr) return *offered;
@@ -86,8 +84,8 @@ ParticleTable table_of_clusters(const SourceClusters& clusters, const ParticleTa
 
 }  // namespace
 
-std::vector<int> clustering_steps(int first, int last) {
-  const int count = std::min(last - first, most_moments);
+std::vector<int> clustering_steps(const Teuchos::ParameterList& block, int first, int last) {
+  const int count = std::min(last - first, Registry<SourceClustering>::create(block, NoContext{})->most_moments());
   std::vector<int> steps;
   for (int k = 1; k <= count; ++k) {
     steps.push_back(first + static_cast<int>(static_cast<long long>(last - first) * k / count));

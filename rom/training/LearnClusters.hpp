@@ -8,8 +8,8 @@
 namespace kiln {
 
 /// Steps of a time window, its last one among them, at which a training keeps the state for source clustering: at most
-/// as many as tell where particles are in between. `first`: the step it begins with.
-std::vector<int> clustering_steps(int first, int last);
+/// as many as the clustering wants. `block`: the input's `clustering`; `first`: the step the window begins with.
+std::vector<int> clustering_steps(const Teuchos::ParameterList& block, int first, int last);
 
 /// Clusters the sources of the newest window's sampled rows and builds the model on them. `reference`: u_ref at the
 /// model's rows; `windows`: those learnt so far; `moments`: coordinates of all windows at the newest one's beginning

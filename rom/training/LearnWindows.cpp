@@ -65,7 +65,8 @@ std::vector<LearnWindows::Marcher> LearnWindows::marchers() const {
 
 std::vector<VectorView> LearnWindows::march(std::vector<Marcher>& marchers, std::size_t window, int first_step,
                                             int last_step, const std::string& label) {
-  const std::vector<int> steps = clusters() ? clustering_steps(first_step, last_step) : std::vector<int>();
+  std::vector<int> steps;
+  if (clusters()) steps = clustering_steps(settings_.block.sublist("clustering"), first_step, last_step);
   std::vector<VectorView> moments;
   for (std::size_t point = 0; point < marchers.size(); ++point) {
     Marcher& marcher = marchers[point];

@@ -238,5 +238,30 @@ TEST(HeatModel, BeamDepositsItsPowerOrPiTimesIt) {
   }
 }
 
+TEST(HeatModel, BeamIsEquationNineWhoeverIsBeside) {
+  const auto beam = Registry<HeatSource>::create(HeatCase::beam(40.0), {});
+  const double width = HeatCase::beam(40.0).get<double>("width");
+  constexpr int most = 21;
+  PositionView places("places", most);
+  for (int i = 0; i < most; ++i) {
+    places(i, 0) = 0.15e-3 + 7e-6 * i;
+    places(i, 1) = 0.16e-3 - 13e-6 * i;
+    places(i, 2) = 1.0 + i;
+  }
+  VectorView all("q", most);
+  beam->flux(1e-4, places, all);
+  for (int count = 0; count < most; ++count) {
+    const std::pair<int, int> some(most - count, most);
+    VectorView q("q", count);
+    beam->flux(1e-4, Kokkos::subview(places, some, Kokkos::ALL), q);
+    for (int i = 0; i < count; ++i) EXPECT_EQ(q(i), all(most - count + i)) << count << " places, place " << i;
+  }
+  for (int i = 0; i < most; ++i) {
+    const double r2 = std::pow(places(i, 0) - 0.15e-3, 2) + std::pow(places(i, 1) - 0.16e-3, 2);
+    const double expected = 40.0 / (2.0 * M_PI * width * width) * std::exp(-r2 / (2.0 * width * width));
+    EXPECT_NEAR(all(i), expected, 1e-12 * expected + 1e-300) << "place " << i;
+  }
+}
+
 }  // namespace
 }  // namespace kiln

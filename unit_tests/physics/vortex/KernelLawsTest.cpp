@@ -8,38 +8,6 @@
 namespace kiln {
 namespace {
 
-/// A number from Lanes through the very code that runs, or from double.
-double one_minus_exponential_of(double z, bool lanes) {
-#ifdef KILN_LANES
-  if (lanes) return one_minus_exponential(all_lanes(z))[3];
-#else
-  static_cast<void>(lanes);
-#endif
-  return one_minus_exponential(z);
-}
-
-std::vector<double> many_arguments() {
-  std::vector<double> arguments{0.0};
-  for (double z = 1e-300; z < 1e-6; z *= 37.0) arguments.push_back(z);
-  for (double z = 1e-6; z < 60.0; z *= 1.0137) arguments.push_back(z);
-  // Where the nearest integer to z/ln 2 changes.
-  for (int n = 0; n < 60; ++n) {
-    const double edge = (n + 0.5) * 0.6931471805599453;
-    for (const double shift : {-1e-15, 0.0, 1e-15}) arguments.push_back(edge * (1.0 + shift));
-  }
-  for (const double z : {39.999, 40.0, 41.0, 1e3, 1e10, 1e300}) arguments.push_back(z);
-  return arguments;
-}
-
-TEST(Exponential, IsRightToAFewUnitsInTheLastPlace) {
-  for (const bool lanes : {false, true}) {
-    for (const double z : many_arguments()) {
-      const double expected = static_cast<double>(-std::expm1(-static_cast<long double>(z)));
-      EXPECT_NEAR(one_minus_exponential_of(z, lanes), expected, 6e-16 * expected) << "z = " << z;
-    }
-  }
-}
-
 /// q and dq/d(r²) of Lamb–Oseen in units of δ, with 64 bits.
 long double lamb_oseen_value(long double z) { return -std::expm1(-z) / z; }
 long double lamb_oseen_slope(long double z) {
@@ -66,10 +34,6 @@ TEST(LambOseenLaw, SlopeIsRightWhereItsTermsCancel) {
 TEST(LambOseenLaw, IsOneOverTheSquareBeyondItsNearField) {
   const LambOseenLaw law(0.3);
   EXPECT_DOUBLE_EQ(law.near_field(), 40.0 * 0.09);
-  for (const bool lanes : {false, true}) {
-    EXPECT_EQ(one_minus_exponential_of(one_minus_exponential_is_one, lanes), 1.0);
-    EXPECT_LT(one_minus_exponential_of(35.0, lanes), 1.0);
-  }
 }
 
 TEST(LambOseenLaw, IsRegularAtTheVortexItself) {

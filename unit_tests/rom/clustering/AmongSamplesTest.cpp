@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/base/Error.hpp"
+#include "rom/training/LearnClusters.hpp"
 
 namespace kiln {
 namespace {
@@ -29,6 +30,15 @@ TEST(AmongSamples, OffersEachRowTheOthers) {
   for (std::size_t cluster = 0; cluster < 3; ++cluster) {
     EXPECT_EQ(offered.source_id(cluster, 1000), pairs.rows[cluster]) << "no source beside the rows";
   }
+}
+
+TEST(AmongSamples, WantsManyMomentsOfALongWindow) {
+  Teuchos::ParameterList block("reduction.clustering");
+  block.set("type", std::string("among samples")).set("sources", 16).set("ridge", 0.005);
+  EXPECT_EQ(clustering_steps(block, 100, 150).size(), 50u) << "all of a short one";
+  const std::vector<int> steps = clustering_steps(block, 0, 1000);
+  EXPECT_EQ(steps.size(), 400u);
+  EXPECT_EQ(steps.back(), 1000);
 }
 
 TEST(AmongSamples, NeedsTwoRows) {
