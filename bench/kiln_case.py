@@ -9,10 +9,10 @@ from run_folder import RunFolder
 ONLINE_RUNS = 5
 # One basis for the whole run: the wake of a beam that crosses the whole part (Experiments 3 and 4) takes more modes.
 GLOBAL = {
-    1: (60, 90, 140, 16),
-    2: (60, 90, 140, 16),
-    3: (70, 100, 160, 16),
-    4: (90, 180, 304, 32),
+    1: (60, 80, 104, 16),
+    2: (60, 80, 104, 16),
+    3: (70, 90, 120, 16),
+    4: (90, 120, 160, 24),
 }
 
 

@@ -25,8 +25,8 @@ class Candidates {
       : rows_(rows),
         modes_(modes),
         components_(components),
-        taken_(rows.getMyGlobalIndices().extent(0), false),
-        errors_(taken_.size(), 0.0),
+        standing_(rows.getMyGlobalIndices().extent(0), Standing::free),
+        errors_(standing_.size(), 0.0),
         misfit_("kiln::rom::misfit", modes.extent(0)) {}
 
   void clear_errors() { std::fill(errors_.begin(), errors_.end(), 0.0); }
@@ -44,19 +44,10 @@ class Candidates {
     }
   }
 
+  /// Twins of those taken come last.
   GlobalIndex worst() const {
-    double mine = -1.0, largest = -1.0;
-    for (std::size_t i = 0; i < errors_.size(); ++i) {
-      if (!taken_[i]) mine = std::max(mine, errors_[i]);
-    }
-    Teuchos::reduceAll(*rows_.getComm(), Teuchos::REDUCE_MAX, 1, &mine, &largest);
-    GlobalIndex lowest = std::numeric_limits<GlobalIndex>::max(), particle = lowest;
-    for (std::size_t i = 0; i < errors_.size(); ++i) {
-      if (taken_[i] || errors_[i] < (1.0 - tie) * largest) continue;
-      lowest = std::min(lowest, rows_.getGlobalElement(static_cast<LocalIndex>(i)));
-    }
-    Teuchos::reduceAll(*rows_.getComm(), Teuchos::REDUCE_MIN, 1, &lowest, &particle);
-    return particle;
+    const GlobalIndex found = worst_of(Standing::free);
+    return found != nobody ? found : worst_of(Standing::twin);
   }
 
   /// Takes a particle out and returns its rows of the modes, one a component.
@@ -64,13 +55,18 @@ class Candidates {
     const std::size_t columns = modes_.extent(1);
     std::vector<double> values(components_ * columns, 0.0);
     const LocalIndex local = rows_.getLocalElement(particle);
-    if (local >= 0 && static_cast<std::size_t>(local) < taken_.size()) {
-      taken_[local] = true;
+    if (local >= 0 && static_cast<std::size_t>(local) < standing_.size()) {
+      standing_[local] = Standing::taken;
       for (int c = 0; c < components_; ++c) {
         for (std::size_t k = 0; k < columns; ++k) values[c * columns + k] = modes_(local * components_ + c, k);
       }
     }
     dense::sum_over_ranks(*rows_.getComm(), values.data(), values.size());
+    double size = 0.0;
+    for (const double value : values) size += value * value;
+    for (std::size_t i = 0; i < standing_.size(); ++i) {
+      if (standing_[i] == Standing::free && moves_as(i, values, tie * tie * size)) standing_[i] = Standing::twin;
+    }
     std::vector<std::vector<double>> result;
     for (int c = 0; c < components_; ++c) {
       result.emplace_back(values.begin() + c * columns, values.begin() + (c + 1) * columns);
@@ -79,10 +75,39 @@ class Candidates {
   }
 
  private:
+  static constexpr GlobalIndex nobody = std::numeric_limits<GlobalIndex>::max();
+  enum class Standing : char { free, twin, taken };
+
+  GlobalIndex worst_of(Standing standing) const {
+    double mine = -1.0, largest = -1.0;
+    for (std::size_t i = 0; i < errors_.size(); ++i) {
+      if (standing_[i] == standing) mine = std::max(mine, errors_[i]);
+    }
+    Teuchos::reduceAll(*rows_.getComm(), Teuchos::REDUCE_MAX, 1, &mine, &largest);
+    GlobalIndex lowest = nobody, particle = nobody;
+    for (std::size_t i = 0; i < errors_.size(); ++i) {
+      if (standing_[i] != standing || errors_[i] < (1.0 - tie) * largest) continue;
+      lowest = std::min(lowest, rows_.getGlobalElement(static_cast<LocalIndex>(i)));
+    }
+    Teuchos::reduceAll(*rows_.getComm(), Teuchos::REDUCE_MIN, 1, &lowest, &particle);
+    return particle;
+  }
+
+  /// Whether a particle's rows of the modes are these, but for `most` in the sum of squares.
+  bool moves_as(std::size_t particle, const std::vector<double>& values, double most) const {
+    const std::size_t columns = modes_.extent(1);
+    double difference = 0.0;
+    for (std::size_t at = 0; at < values.size() && difference <= most; ++at) {
+      const double d = modes_(particle * components_ + at / columns, at % columns) - values[at];
+      difference += d * d;
+    }
+    return difference <= most;
+  }
+
   const Map& rows_;
   ConstMatrixView modes_;
   int components_;
-  std::vector<bool> taken_;
+  std::vector<Standing> standing_;
   std::vector<double> errors_;
   VectorView misfit_;
 };

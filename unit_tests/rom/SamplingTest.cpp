@@ -88,6 +88,15 @@ TEST(Greedy, TakesTheLowestIdOfTies) {
   EXPECT_EQ(sample(*greedy(2), table, 1, world()), (Ids{1, 2}));
 }
 
+TEST(Greedy, LeavesTwinsForTheEnd) {
+  // Three pairs of mirror images. Turn 1 adds 1 (9) and, since 2 tells nothing new, 0 (4). Turn 2 has α = 17/13 at
+  // {1, 0}: of the particles that are nobody's twin only 4 and 5 are left, misfit −1.31, and then only twins: 1.08,
+  // −1.62, −1.31.
+  const Table table = {{2, 1}, {3, 5}, {3, 5}, {2, 1}, {1, 0}, {1, 0}};
+  EXPECT_EQ(sample(*greedy(4), table, 1, world()), (Ids{0, 1, 3, 4}));
+  EXPECT_EQ(sample(*greedy(6), table, 1, world()).size(), 6u);
+}
+
 TEST(Greedy, AddsUpAParticlesComponents) {
   // Squares of the first mode by particle: 25 + 0, 16 + 16, 1 + 1.
   const Table table = {{5}, {0}, {4}, {4}, {1}, {1}};
