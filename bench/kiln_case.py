@@ -10,7 +10,7 @@ ONLINE_RUNS = 5
 # One basis for the whole run: the wake of a beam that crosses the whole part (Experiments 3 and 4) takes more modes.
 GLOBAL = {
     1: (60, 80, 104, 16),
-    2: (60, 80, 104, 16),
+    2: (60, 90, 120, 24),
     3: (70, 90, 120, 16),
     4: (90, 120, 160, 24),
 }
