@@ -102,6 +102,16 @@ Array<T> read_replicated(const Node& node, const std::string& name, H5T_class_t 
   return array;
 }
 
+void require_type(const Node& node, const Dataset& dataset, const std::string& name, H5T_class_t type) {
+  if (dataset.type == type) return;
+  const auto words = [](H5T_class_t kind) -> std::string {
+    if (kind == H5T_FLOAT) return "floating-point numbers";
+    if (kind == H5T_INTEGER) return "integers";
+    return kind == H5T_STRING ? "texts" : "something else";
+  };
+  node.fail(name, "holds " + words(dataset.type), words(type));
+}
+
 /// A shape is a few bytes of a file; the values must be in it, too.
 void require_values(const Node& node, const Dataset& dataset, const std::string& name) {
   const Id type(H5Dget_type(dataset.id), H5Tclose);
@@ -150,14 +160,7 @@ Dataset open_dataset(const Node& node, const std::string& name) {
 
 Dataset open_dataset(const Node& node, const std::string& name, H5T_class_t type) {
   Dataset dataset = open_dataset(node, name);
-  if (dataset.type != type) {
-    const auto words = [](H5T_class_t kind) -> std::string {
-      if (kind == H5T_FLOAT) return "floating-point numbers";
-      if (kind == H5T_INTEGER) return "integers";
-      return kind == H5T_STRING ? "texts" : "something else";
-    };
-    node.fail(name, "holds " + words(dataset.type), words(type));
-  }
+  require_type(node, dataset, name, type);
   require_values(node, dataset, name);
   return dataset;
 }
@@ -301,16 +304,18 @@ void Group::link(const std::string& name, const std::string& target) {
 }
 
 OpenedDataset::OpenedDataset(std::shared_ptr<Node> node, std::string name)
-    : node_(std::move(node)),
-      name_(std::move(name)),
-      dataset_(std::make_shared<Dataset>(open_dataset(*node_, name_))) {}
+    : node_(std::move(node)), name_(std::move(name)), dataset_(std::make_shared<Dataset>(open_dataset(*node_, name_))) {
+  require_values(*node_, *dataset_, name_);
+}
 
 void OpenedDataset::write_block(const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
                                 const std::vector<double>& values) {
+  require_type(*node_, *dataset_, name_, H5T_FLOAT);
   write_slab(*node_, *dataset_, name_, start, count, H5T_NATIVE_DOUBLE, values.data());
 }
 void OpenedDataset::write_block(const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
                                 const std::vector<long long>& values) {
+  require_type(*node_, *dataset_, name_, H5T_INTEGER);
   write_slab(*node_, *dataset_, name_, start, count, H5T_NATIVE_LLONG, values.data());
 }
 
@@ -318,11 +323,11 @@ OpenedDataset Group::opened(const std::string& name) const { return {node_, name
 
 void Group::write_block(const std::string& name, const std::vector<std::size_t>& start,
                         const std::vector<std::size_t>& count, const std::vector<double>& values) {
-  write_slab(*node_, open_dataset(*node_, name, H5T_FLOAT), name, start, count, H5T_NATIVE_DOUBLE, values.data());
+  opened(name).write_block(start, count, values);
 }
 void Group::write_block(const std::string& name, const std::vector<std::size_t>& start,
                         const std::vector<std::size_t>& count, const std::vector<long long>& values) {
-  write_slab(*node_, open_dataset(*node_, name, H5T_INTEGER), name, start, count, H5T_NATIVE_LLONG, values.data());
+  opened(name).write_block(start, count, values);
 }
 std::vector<double> Group::read_block(const std::string& name, const std::vector<std::size_t>& start,
                                       const std::vector<std::size_t>& count) const {

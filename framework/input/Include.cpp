@@ -10,6 +10,8 @@ namespace {
 
 /// A file that includes two others that include two others … is cut short.
 constexpr int most_files = 100;
+/// Of a file's name, in a message.
+constexpr std::size_t longest_shown = 1000;
 
 void merge(YamlNode& lower, YamlNode upper) {
   if (lower.kind != YamlNode::Kind::map || upper.kind != YamlNode::Kind::map) {
@@ -51,7 +53,7 @@ class Reader {
     if (++count_ > most_files) return refuse(fmt::format("more than {} files are included", most_files - 1));
     const InputFiles::Contents& contents = files_.read(path);
     if (!contents.trouble.empty()) {
-      return refuse(included ? fmt::format("{}: {}", contents.trouble, file) : contents.trouble);
+      return refuse(included ? fmt::format("{}: {}", contents.trouble, shown(file, longest_shown)) : contents.trouble);
     }
     mistakes_.begin_file(file);
     YamlNode own;

@@ -53,6 +53,9 @@ TEST_F(IncludeTest, WhatCannotBeIncludedIsTold) {
   EXPECT_EQ(mistakes_of("include: [absent.yaml, nowhere.yaml]\n"),
             (Lines{"run.yaml:1:11: include: there is no such file: absent.yaml",
                    "run.yaml:1:24: include: there is no such file: nowhere.yaml"}));
+  const Lines long_name = mistakes_of("include: " + std::string(5000, 'a') + "\n");
+  ASSERT_EQ(long_name.size(), 1u);
+  EXPECT_LT(long_name[0].size(), 1200u) << "a message holds no more of a name than can be read";
   EXPECT_EQ(mistakes_of("include: {a: 1}\n"),
             Lines{"run.yaml:1:1: include: no file name is given; expected a file or a list of files"});
   write("list.yaml", "- a\n");
