@@ -20,7 +20,10 @@ endif()
 if(KILN_SANITIZE)
   target_compile_options(kiln_options INTERFACE -fsanitize=${KILN_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(kiln_options INTERFACE -fsanitize=${KILN_SANITIZE})
+  add_library(kiln_keep_loaded OBJECT ${CMAKE_CURRENT_LIST_DIR}/KeepLoaded.cpp)
 endif()
+# What else a program of this tree consists of.
+set(KILN_PROGRAM_OBJECTS $<$<TARGET_EXISTS:kiln_keep_loaded>:$<TARGET_OBJECTS:kiln_keep_loaded>>)
 if(KILN_COVERAGE)
   # Several ranks of one test count into the same files.
   target_compile_options(kiln_options INTERFACE --coverage -fprofile-update=atomic)

@@ -49,4 +49,10 @@ inline void copy_values(const ConstVectorView& from, const VectorView& to) {
       label, static_cast<LocalIndex>(to.extent(0)), KOKKOS_LAMBDA(const LocalIndex i) { target(i) = source(i); });
 }
 
+/// Brings values to their host mirror, of Kokkos::create_mirror_view. Where the mirror is the array itself, nothing is
+/// to be done; Kokkos::deep_copy would wait for all kernels nonetheless.
+inline void copy_to_host(const VectorView& from, const VectorView::HostMirror& to) {
+  if (to.data() != from.data()) Kokkos::deep_copy(to, from);
+}
+
 }  // namespace kiln

@@ -80,8 +80,9 @@ TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
   return span;
 }
 
-void run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
+void run_time_loop(Method& method, TimeScheme& scheme, VectorView unknown, const TimeSpan& span,
                    const std::vector<Observer*>& observers, LoopTotals& totals) {
+  const VectorView x = uncounted(unknown);
   const Communicator& communicator = *method.particles()->getComm();
   Checkpoints checkpoints(span, communicator);
   StopRequest stop(communicator, span.first_step);

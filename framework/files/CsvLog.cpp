@@ -1,5 +1,6 @@
 #include "framework/files/CsvLog.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <Teuchos_CommHelpers.hpp>
@@ -124,8 +125,8 @@ void CsvLog::write(const std::vector<double>& records) {
   for (std::size_t at = 0; at < kept_.size(); at += record_) {
     for (std::size_t rank = 0; rank < parts.size(); ++rank) parts[rank] = &records[rank * kept_.size() + at] + 2;
     join_(parts, numbers);
-    fmt::format_to(std::back_inserter(text), "{},{}", static_cast<int>(kept_[at]), kept_[at + 1]);
-    for (const double number : numbers) fmt::format_to(std::back_inserter(text), ",{}", number);
+    fmt::format_to(std::back_inserter(text), FMT_COMPILE("{},{}"), static_cast<int>(kept_[at]), kept_[at + 1]);
+    for (const double number : numbers) fmt::format_to(std::back_inserter(text), FMT_COMPILE(",{}"), number);
     text += '\n';
   }
   file_ << text;

@@ -43,13 +43,15 @@ Selection select(const Dataset& dataset, const std::vector<std::size_t>& start, 
   return selection;
 }
 
-/// Ranks agree on how a large dataset is moved, piece by piece; for a small one that takes longer than moving it.
+/// Ranks agree on how a large dataset is moved, piece by piece; for a small one that takes longer than moving it, and
+/// so do properties of its own.
 Id transfer_properties(const Node& node, const Dataset& dataset) {
   constexpr std::size_t large = 1 << 20;
-  Id properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-  if (node.file->parallel && product(dataset.shape) * sizeof(double) >= large) {
-    H5Pset_dxpl_mpio(properties, H5FD_MPIO_COLLECTIVE);
+  if (!node.file->parallel || product(dataset.shape) * sizeof(double) < large) {
+    return Id(H5P_DEFAULT, [](hid_t) { return herr_t(0); });
   }
+  Id properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  H5Pset_dxpl_mpio(properties, H5FD_MPIO_COLLECTIVE);
   return properties;
 }
 

@@ -46,11 +46,12 @@ bool is_dense(const Map& map) {
 }  // namespace
 
 RowOrder::RowOrder(const Map& map) : slabs_(slab_map(map.getGlobalNumElements(), map)) {
-  ids_.resize(count());
+  ids_.resize(slabs_->getMyGlobalIndices().extent(0));
+  first_ = ids_.empty() ? 0 : static_cast<std::size_t>(slabs_->getMinGlobalIndex());
   if (is_dense(map)) {
     if (!map.isOneToOne()) throw_shared();
     particles_ = Teuchos::rcp(new Map(map));
-    std::iota(ids_.begin(), ids_.end(), static_cast<long long>(first()));
+    std::iota(ids_.begin(), ids_.end(), static_cast<long long>(first_));
   } else {
     const std::vector<long long> all = gathered_ids(map);
     if (std::adjacent_find(all.begin(), all.end()) != all.end()) throw_shared();
@@ -60,14 +61,12 @@ RowOrder::RowOrder(const Map& map) : slabs_(slab_map(map.getGlobalNumElements(),
     }
     particles_ =
         Teuchos::rcp(new Map(map.getGlobalNumElements(), Teuchos::arrayViewFromVector(rows), 0, map.getComm()));
-    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first()), ids_.size(), ids_.begin());
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first_), ids_.size(), ids_.begin());
   }
   import_ = Teuchos::rcp(new Import(particles_, slabs_));
 }
 
 std::size_t RowOrder::rows() const { return slabs_->getGlobalNumElements(); }
-std::size_t RowOrder::first() const { return count() == 0 ? 0 : static_cast<std::size_t>(slabs_->getMinGlobalIndex()); }
-std::size_t RowOrder::count() const { return slabs_->getMyGlobalIndices().extent(0); }
 
 std::vector<double> RowOrder::slab(ConstMatrixView values) const {
   const std::size_t columns = values.extent(1);

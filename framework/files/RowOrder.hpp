@@ -13,9 +13,9 @@ class RowOrder {
   /// Collective. Throws std::logic_error if a particle lies on more than one rank.
   explicit RowOrder(const Map& map);
 
-  std::size_t rows() const;   ///< over all ranks
-  std::size_t first() const;  ///< of this rank's slab
-  std::size_t count() const;  ///< of this rank's slab
+  std::size_t rows() const;                          ///< over all ranks
+  std::size_t first() const { return first_; }       ///< of this rank's slab
+  std::size_t count() const { return ids_.size(); }  ///< of this rank's slab
   /// Global ids of this rank's slab, ascending.
   const std::vector<long long>& ids() const { return ids_; }
   /// This rank's slab, row by row. values: local particles × columns, in the map's order. Collective.
@@ -25,6 +25,7 @@ class RowOrder {
   Teuchos::RCP<const Map> particles_;  ///< each local particle's row
   Teuchos::RCP<const Map> slabs_;
   Teuchos::RCP<const Import> import_;
+  std::size_t first_ = 0;
   std::vector<long long> ids_;
 };
 

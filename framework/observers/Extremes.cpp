@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "framework/base/Loop.hpp"
 #include "framework/files/CsvTable.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/registry/Registry.hpp"
@@ -59,7 +60,8 @@ Extremes::Extremes(const Teuchos::ParameterList& list, const Context& context)
     : context_(context),
       every_(list.get<int>("every")),
       fields_(context.method.fields()),
-      state_("kiln::observers::state", context.method.positions().extent(0) * fields_.size()) {}
+      state_("kiln::observers::state", context.method.positions().extent(0) * fields_.size()),
+      state_host_(Kokkos::create_mirror_view(state_)) {}
 
 std::vector<std::string> Extremes::columns() const {
   std::vector<std::string> columns{"step", "time [s]"};
@@ -72,9 +74,9 @@ std::vector<std::string> Extremes::columns() const {
   return columns;
 }
 
-double Extremes::particle_with(double value, const VectorView::HostMirror& state, std::size_t component) const {
-  for (std::size_t index = component; index < state.extent(0); index += fields_.size()) {
-    if (state(index) != value) continue;
+double Extremes::particle_with(double value, std::size_t component) const {
+  for (std::size_t index = component; index < state_host_.extent(0); index += fields_.size()) {
+    if (state_host_(index) != value) continue;
     return static_cast<double>(
         context_.method.particles()->getGlobalElement(static_cast<LocalIndex>(index / fields_.size())));
   }
@@ -83,14 +85,14 @@ double Extremes::particle_with(double value, const VectorView::HostMirror& state
 
 std::vector<double> Extremes::local_extremes(const Moment& moment) {
   context_.method.state(moment.x, state_);
-  const auto state = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_);
+  copy_to_host(state_, state_host_);
   const std::size_t components = fields_.size();
   std::vector<double> extremes;
   for (std::size_t component = 0; component < components; ++component) {
-    const auto [smallest, largest] = range(state, component, components);
+    const auto [smallest, largest] = range(state_host_, component, components);
     for (const double value : {largest, smallest}) {
       extremes.push_back(value);
-      extremes.push_back(particle_with(value, state, component));
+      extremes.push_back(particle_with(value, component));
     }
   }
   return extremes;

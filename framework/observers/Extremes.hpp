@@ -29,13 +29,14 @@ class Extremes : public Observer {
   std::vector<std::string> columns() const;
   /// Value and particle of the largest and the smallest of each component on this rank, in turn.
   std::vector<double> local_extremes(const Moment& moment);
-  /// The global id, exact as a double, of the first particle on this rank with this value; −1 without one.
-  double particle_with(double value, const VectorView::HostMirror& state, std::size_t component) const;
+  /// The global id, exact as a double, of the first particle on this rank with this value now; −1 without one.
+  double particle_with(double value, std::size_t component) const;
 
   Context context_;
   int every_;
   std::vector<Field> fields_;
   VectorView state_;
+  VectorView::HostMirror state_host_;
   std::unique_ptr<CsvLog> log_;  ///< null before begin()
 };
 

@@ -15,7 +15,7 @@ struct Moment {
   int step;           ///< 0: initial state
   int last_step;      ///< number of the run's last step
   double time;        ///< in s
-  ConstVectorView x;  ///< the method's unknown
+  ConstVectorView x;  ///< the method's unknown; the next step changes it
   SolveReport solve;  ///< of this step; empty at step 0
   /// A checkpoint of this step is written after the other observers have seen it: a run that restarts from it needs all
   /// they have observed so far on the disk.

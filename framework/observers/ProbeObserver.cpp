@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Loop.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/CsvTable.hpp"
 #include "framework/files/Together.hpp"
@@ -104,7 +105,7 @@ void ProbeObserver::observe(const Moment& moment) {
 
 void ProbeObserver::add_row(const Moment& moment) {
   reader_(moment.x, read_);
-  Kokkos::deep_copy(read_host_, read_);
+  copy_to_host(read_, read_host_);
   const std::size_t components = fields_.size();
   for (std::size_t i = 0; i < mine_.size(); ++i) {
     for (std::size_t c = 0; c < components; ++c) part_[mine_[i] * components + c] = read_host_(i * components + c);

@@ -100,17 +100,20 @@ LinearMultistep::LinearMultistep(MultistepCoefficients coefficients, const Conte
   }
 
   const LocalIndex unknowns = local_size(*method_.coordinates());
-  levels_.resize(coefficients_.steps() + 1);
-  for (Level& level : levels_) level.x = VectorView("kiln::time::earlier unknown", unknowns);
+  for (std::size_t j = 0; j <= coefficients_.steps(); ++j) {
+    levels_.push_back(std::make_unique<Level>());
+    levels_[j]->x = VectorView("kiln::time::earlier unknown", unknowns);
+  }
   allocate_rows();
 }
 
 void LinearMultistep::allocate_rows() {
   const LocalIndex rows = method_.row_size();
+  if (static_cast<LocalIndex>(history_.extent(0)) == rows) return;
   const bool keep_rates = coefficients_.uses_earlier_rates() || starter_.uses_earlier_rates();
-  for (Level& level : levels_) {
-    level.u = VectorView("kiln::time::earlier state", rows);
-    level.f = keep_rates || &level == &levels_[0] ? VectorView("kiln::time::earlier rate", rows) : levels_[0].f;
+  for (const auto& level : levels_) {
+    level->u = VectorView("kiln::time::earlier state", rows);
+    level->f = keep_rates || level == levels_[0] ? VectorView("kiln::time::earlier rate", rows) : levels_[0]->f;
   }
   history_ = VectorView("kiln::time::history", rows);
 }
@@ -122,20 +125,22 @@ void LinearMultistep::keep(Level& level, ConstVectorView x, double time) {
 }
 
 void LinearMultistep::start(ConstVectorView x, double time) {
-  if (static_cast<LocalIndex>(history_.extent(0)) != method_.row_size()) allocate_rows();
-  keep(levels_[0], x, time);
+  allocate_rows();
+  keep(*levels_[0], x, time);
   known_ = 1;
 }
 
 void LinearMultistep::evaluate_anew() {
   allocate_rows();
   // Oldest first, as the run itself met them.
-  for (std::size_t j = known_; j-- > 0;) method_.evaluate(levels_[j].x, levels_[j].time, levels_[j].u, levels_[j].f);
+  for (std::size_t j = known_; j-- > 0;) {
+    method_.evaluate(levels_[j]->x, levels_[j]->time, levels_[j]->u, levels_[j]->f);
+  }
 }
 
 void LinearMultistep::gather_history(const MultistepCoefficients& scheme) {
   for (std::size_t j = 1; j <= scheme.steps(); ++j) {
-    const Level& level = levels_[j - 1];
+    const Level& level = *levels_[j - 1];
     if (j == 1 || scheme.alpha[j] != 0.0) add_level(scheme.alpha[j], level.u, j == 1, history_);
     if (scheme.beta[j] != 0.0) add_level(-step_ * scheme.beta[j], level.f, false, history_);
   }
@@ -145,15 +150,16 @@ SolveReport LinearMultistep::advance(VectorView x, double time) {
   if (known_ == 0) throw std::logic_error("LinearMultistep::advance: neither started nor restored");
   if (method_.begin_step(time)) evaluate_anew();
   const bool starting = known_ < coefficients_.steps();
-  Level& next = levels_.back();
+  Level& next = *levels_.back();
   SolveReport report;
   if (starting && runge_kutta_starter_) {
-    report.residuals = runge_kutta_starter_->advance(x, levels_[0].time) + 1;
+    report.residuals = runge_kutta_starter_->advance(x, levels_[0]->time) + 1;
     keep(next, x, time);
   } else {
     const MultistepCoefficients& scheme = starting ? starter_ : coefficients_;
     gather_history(scheme);
-    report = method_.solve({scheme.alpha[0], step_ * scheme.beta[0], time, history_}, x, next.u, next.f);
+    report = method_.solve({scheme.alpha[0], step_ * scheme.beta[0], time, uncounted(history_)}, x, uncounted(next.u),
+                           uncounted(next.f));
     copy_values(x, next.x);
     next.time = time;
   }
@@ -166,8 +172,8 @@ SolveReport LinearMultistep::advance(VectorView x, double time) {
 void LinearMultistep::save(hdf5::Group& group) const {
   std::vector<double> times;
   for (std::size_t j = 0; j < known_; ++j) {
-    times.push_back(levels_[j].time);
-    save_unknown(group, fmt::format("unknown_{}", j), *method_.coordinates(), levels_[j].x);
+    times.push_back(levels_[j]->time);
+    save_unknown(group, fmt::format("unknown_{}", j), *method_.coordinates(), levels_[j]->x);
   }
   group.write("times", times);
 }
@@ -180,11 +186,11 @@ void LinearMultistep::restore(const hdf5::Group& group) {
   }
   known_ = times.size();
   allocate_rows();
-  const VectorView x("kiln::time::restored unknown", levels_[0].x.extent(0));
+  const VectorView x("kiln::time::restored unknown", levels_[0]->x.extent(0));
   // Oldest first, as the run itself met them.
   for (std::size_t j = known_; j-- > 0;) {
     restore_unknown(group, fmt::format("unknown_{}", j), *method_.coordinates(), x);
-    keep(levels_[j], x, times[j]);
+    keep(*levels_[j], x, times[j]);
   }
 }
 

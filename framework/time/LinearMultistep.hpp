@@ -40,7 +40,7 @@ class LinearMultistep : public TimeScheme {
   };
 
   void keep(Level& level, ConstVectorView x, double time);
-  /// Arrays for the method's rows as they are now.
+  /// Arrays for as many rows as the method has now.
   void allocate_rows();
   /// States and rates of all levels, at rows that have changed.
   void evaluate_anew();
@@ -51,9 +51,9 @@ class LinearMultistep : public TimeScheme {
   std::unique_ptr<RungeKuttaStep> runge_kutta_starter_;  ///< null where starter_ does
   Method& method_;
   double step_;
-  std::vector<Level> levels_;  ///< newest first; k, and one more that the next step writes
-  std::size_t known_ = 0;      ///< levels that hold a state
-  VectorView history_;         ///< h of StepResidual
+  std::vector<std::unique_ptr<Level>> levels_;  ///< newest first; k, and one more that the next step writes
+  std::size_t known_ = 0;                       ///< levels that hold a state
+  VectorView history_;                          ///< h of StepResidual
 };
 
 }  // namespace kiln

@@ -161,25 +161,9 @@ void HeatModel::update_states(const ConstVectorView& of_sources) const {
   states_of_.remember(of_sources);
 }
 
-bool HeatModel::absorbed_holds(double time) const {
-  const std::vector<Parameter>& parameters = heat_source_->parameters().list();
-  const auto same = [](double told, const Parameter& parameter) { return told == *parameter.value; };
-  if (!absorbed_at_.empty() && absorbed_at_.back() == time &&
-      std::equal(absorbed_at_.begin(), absorbed_at_.end() - 1, parameters.begin(), parameters.end(), same)) {
-    return true;
-  }
-  return false;
-}
-
-void HeatModel::remember_absorbed(double time) const {
-  absorbed_at_.clear();
-  for (const Parameter& parameter : heat_source_->parameters().list()) absorbed_at_.push_back(*parameter.value);
-  absorbed_at_.push_back(time);
-}
-
 void HeatModel::update_absorbed(double time) const {
   const auto number = static_cast<LocalIndex>(heated_.extent(0));
-  if (number == 0 || absorbed_holds(time)) return;
+  if (number == 0 || (time == absorbed_time_ && absorbed_of_.are(heat_source_->parameters()))) return;
   heat_source_->flux(time, heated_positions_, heated_flux_);
   const auto absorbed = borrowed(absorbed_);
   const auto heated = borrowed(heated_);
@@ -187,7 +171,8 @@ void HeatModel::update_absorbed(double time) const {
   const auto areas = borrowed(domain_.areas);
   loop(
       absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
-  remember_absorbed(time);
+  absorbed_of_.remember(heat_source_->parameters());
+  absorbed_time_ = time;
 }
 
 void HeatModel::rate(ConstVectorView u, double time, VectorView of_rows) const {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <limits>
 #include <memory>
 
+#include "framework/model/LastParameters.hpp"
 #include "framework/model/LastState.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/model/PairwiseModel.hpp"
@@ -76,12 +78,9 @@ class HeatModel final : public Model, public PairwiseModel {
   void update_states(const ConstVectorView& of_sources) const;
   /// Fills states_, slopes_ and absorbed_.
   void linearise(ConstVectorView u, double time) const;
-  /// Fills absorbed_ at the heated rows.
-  void update_absorbed(double time) const;
-  /// Whether absorbed_ is that of this time and of the source's parameters as they are; if not, it will be. One
+  /// Fills absorbed_ at the heated rows, if it is not that of this time and of the source's parameters as they are: one
   /// evaluation of the source serves all iterations of a step.
-  bool absorbed_holds(double time) const;
-  void remember_absorbed(double time) const;
+  void update_absorbed(double time) const;
   /// Columns first_column … of `product`, at most Width.
   template <int Width>
   void apply_columns(ConstMatrixView v, MatrixView product, int first_column) const;
@@ -111,9 +110,10 @@ class HeatModel final : public Model, public PairwiseModel {
   PositionView heated_positions_;
 
   // Work arrays: the sampled model is evaluated millions of times and must not allocate.
-  VectorView heated_flux_;                               ///< q in W/m² at heated_
-  VectorView absorbed_;                                  ///< q_i A_i in W of every row
-  mutable std::vector<double> absorbed_at_;              ///< the parameters and, last, the time it was taken at
+  VectorView heated_flux_;  ///< q in W/m² at heated_
+  VectorView absorbed_;     ///< q_i A_i in W of every row, of absorbed_of_ and absorbed_time_
+  mutable LastParameters absorbed_of_;
+  mutable double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
   ThermalStateView states_;                              ///< of the sources and, last, nobody
   mutable LastState states_of_;                          ///< whose states_ they are
   VectorView fluxes_;                                    ///< pair sums of every row

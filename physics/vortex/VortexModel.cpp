@@ -207,22 +207,14 @@ void VortexModel::initial_state(VectorView u) const {
       });
 }
 
-bool VortexModel::last_rate_holds(ConstVectorView u) const {
-  const std::vector<Parameter>& parameters = parameters_.list();
-  const auto same = [](double last, const Parameter& parameter) { return last == *parameter.value; };
-  return last_parameters_.size() == parameters.size() &&
-         std::equal(last_parameters_.begin(), last_parameters_.end(), parameters.begin(), same) && last_state_.is(u);
-}
-
 void VortexModel::rate(ConstVectorView u, double, VectorView f) const {
   check("rate", u.extent(0), f.extent(0));
   if (row_count() == 0) return;
-  if (last_rate_holds(u)) return copy_values(last_rate_, f);
+  if (last_parameters_.are(parameters_) && last_state_.is(u)) return copy_values(last_rate_, f);
   sum_velocities(u, f);
   copy_values(f, last_rate_);
   last_state_.remember(u);
-  last_parameters_.clear();
-  for (const Parameter& parameter : parameters_.list()) last_parameters_.push_back(*parameter.value);
+  last_parameters_.remember(parameters_);
 }
 
 void VortexModel::sum_velocities(ConstVectorView u, VectorView f) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/model/LastParameters.hpp"
 #include "framework/model/LastState.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/model/PairwiseModel.hpp"
@@ -69,8 +70,6 @@ class VortexModel final : public Model, public PairwiseModel {
   LocalIndex source_count() const { return static_cast<LocalIndex>(positions_.extent(0)); }
   void check(const char* method, std::size_t u, std::size_t f) const;
   void require_no_lists(const char* method) const;
-  /// Whether last_rate_ is that of u and of the parameters as they are.
-  bool last_rate_holds(ConstVectorView u) const;
   void sum_velocities(ConstVectorView u, VectorView f) const;
   /// Fills arrays_ from a state.
   void arrange(ConstVectorView u) const;
@@ -90,8 +89,8 @@ class VortexModel final : public Model, public PairwiseModel {
   std::unique_ptr<VortexKernel> kernel_;
   std::unique_ptr<VortexSum> sum_;
   double circulation_scale_;
-  mutable LastState last_state_;
-  mutable std::vector<double> last_parameters_;
+  mutable LastState last_state_;            ///< that last_rate_ is the rate of
+  mutable LastParameters last_parameters_;  ///< likewise
   VectorView last_rate_;
 
   // Where every source acts on every row: sources by id, up to a multiple of the lanes.

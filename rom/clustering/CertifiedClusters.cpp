@@ -172,7 +172,7 @@ SourceClusters CertifiedClusters::clusters(const PairWeights& pairs, const Sourc
   if (most_ > 0) {
     opening = smallest_openings(most_, path_, pairs, [&](std::size_t row, double tried) {
       opening[row] = tried;
-      return row_count(row, pairs, sources, tree, accepts);
+      return cluster_count(row, pairs, sources, tree, accepts);
     });
   }
   return shared_clusters(pairs, sources, tree, Shares::by_weight, accepts);

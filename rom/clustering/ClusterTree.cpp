@@ -95,8 +95,8 @@ std::vector<double> shares_of(const ClusterTree& tree, const ClusterTree::Node& 
   return result;
 }
 
-std::size_t row_count(std::size_t row, const PairWeights& pairs, const SharedSources& sources, const ClusterTree& tree,
-                      const Accepts& accepts) {
+std::size_t cluster_count(std::size_t row, const PairWeights& pairs, const SharedSources& sources,
+                          const ClusterTree& tree, const Accepts& accepts) {
   return RowLists(pairs, sources, tree, accepts).of(row).size();
 }
 

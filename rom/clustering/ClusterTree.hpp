@@ -42,8 +42,8 @@ std::vector<double> shares_of(const ClusterTree& tree, const ClusterTree::Node& 
 using Accepts = std::function<bool(std::size_t row, std::size_t node)>;
 
 /// How many clusters shared_clusters() gives a row.
-std::size_t row_count(std::size_t row, const PairWeights& pairs, const SharedSources& sources, const ClusterTree& tree,
-                      const Accepts& accepts);
+std::size_t cluster_count(std::size_t row, const PairWeights& pairs, const SharedSources& sources,
+                          const ClusterTree& tree, const Accepts& accepts);
 
 /// The nodes that stand for their members in each row's sum. A node is taken where `accepts` says so and the row is not
 /// in it; else its children are looked at, and of a leaf the particles one by one. So every source is in exactly one of
