@@ -22,6 +22,11 @@ if(KILN_SANITIZE)
   target_link_options(kiln_options INTERFACE -fsanitize=${KILN_SANITIZE})
   add_library(kiln_keep_loaded OBJECT ${CMAKE_CURRENT_LIST_DIR}/KeepLoaded.cpp)
 endif()
+# How many times longer tests may take than in an optimised build.
+set(KILN_SLOWER 1)
+if(KILN_SANITIZE OR KILN_COVERAGE)
+  set(KILN_SLOWER 8)
+endif()
 # What else a program of this tree consists of.
 set(KILN_PROGRAM_OBJECTS $<$<TARGET_EXISTS:kiln_keep_loaded>:$<TARGET_OBJECTS:kiln_keep_loaded>>)
 if(KILN_COVERAGE)
