@@ -15,6 +15,8 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 SMALL = HERE / "cases" / "small.yaml"
+# How much longer a build with sanitizers or counters may take.
+SLOWER = float(os.environ.get("KILN_SLOWER", "1"))
 
 # What mpirun adds of its own when a rank ends with another status than 0.
 MPIEXEC_NOTICE = re.compile(r"^-{40,}\n.*?^-{40,}\n", re.MULTILINE | re.DOTALL)
@@ -50,7 +52,7 @@ def program(folder, *words, timeout=60, environment=None):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         encoding="utf-8",
-        timeout=timeout,
+        timeout=timeout * SLOWER,
     )
     return Outcome(done.returncode, done.stdout, done.stderr)
 

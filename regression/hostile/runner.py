@@ -15,12 +15,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable
 
-# How much longer, and how much larger, a build with sanitizers may be.
-SLOWER = float(os.environ.get("KILN_SLOWER", "1"))
+from harness import SLOWER
+
 CPU_SECONDS = 5.0 * SLOWER
 # A busy machine makes a run wait; a run that takes longer than this hangs.
 WALL_SECONDS = 30.0 * SLOWER
-MEMORY_BYTES = (1 << 30) * SLOWER
+MEMORY_BYTES = (1 << 30) * SLOWER  # sanitizers take memory, too
 LONGEST_MESSAGE = 60  # lines
 
 CRASH = re.compile(

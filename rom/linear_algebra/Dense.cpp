@@ -28,6 +28,8 @@ void multiply(Teuchos::ETransp transpose, double alpha, const ConstMatrixView& a
 
 /// Entries of a matrix up to which affine() and transposed() go without BLAS: what a core keeps at hand.
 constexpr std::size_t short_product = 1 << 15;
+/// Columns of a product up to which it goes column by column: BLAS packs its operands anew in each call.
+constexpr int narrow = 16;
 
 #ifdef KILN_LANES
 /// Rows i … i + Blocks · lane_count − 1 of y = b + A x.
@@ -116,6 +118,19 @@ void product(Transpose transpose_a, Transpose transpose_b, double alpha, const C
   if (rows(c) == 0 || columns(c) == 0) return;
   if (inner == 0) {
     for (int j = 0; j < columns(c); ++j) scale(beta, Kokkos::subview(c, Kokkos::ALL, j));
+    return;
+  }
+  if (transpose_b == Transpose::no && alpha == 1.0 && beta == 0.0 && a.size() <= short_product &&
+      columns(c) <= narrow) {
+    for (int j = 0; j < columns(c); ++j) {
+      const VectorView column = Kokkos::subview(c, Kokkos::ALL, j);
+      if (transpose_a == Transpose::yes) {
+        transposed(a, &b(0, j), column.data());
+      } else {
+        scale(0.0, column);
+        affine(column, a, &b(0, j), column.data());
+      }
+    }
     return;
   }
   Blas().GEMM(transpose_a == Transpose::yes ? Teuchos::TRANS : Teuchos::NO_TRANS,

@@ -45,6 +45,30 @@ TEST(Dense, ShortProductsArePlainSums) {
   }
 }
 
+/// With as few columns as go one by one, with more of them, and beyond what goes without BLAS.
+TEST(Dense, ProductsArePlainSums) {
+  for (const std::size_t inner : {0, 1, 14, 3000}) {
+    for (const std::size_t columns : {1, 10, 16, 17}) {
+      const MatrixView a = random_matrix(12, inner, 3), b = random_matrix(inner, columns, 5),
+                       c = random_matrix(12, columns, 7), d = random_matrix(12, columns, 9);
+      const MatrixView turned("turned", inner, 12);
+      for (std::size_t k = 0; k < inner; ++k) {
+        for (std::size_t i = 0; i < 12; ++i) turned(k, i) = a(i, k);
+      }
+      product(Transpose::no, Transpose::no, 1.0, a, b, 0.0, c);
+      product(Transpose::yes, Transpose::no, 1.0, turned, b, 0.0, d);
+      for (std::size_t j = 0; j < columns; ++j) {
+        for (std::size_t i = 0; i < 12; ++i) {
+          double sum = 0.0;
+          for (std::size_t k = 0; k < inner; ++k) sum += a(i, k) * b(k, j);
+          EXPECT_NEAR(c(i, j), sum, 1e-12) << inner << " terms, " << columns << " columns";
+          EXPECT_NEAR(d(i, j), sum, 1e-12) << inner << " terms, " << columns << " columns, transposed";
+        }
+      }
+    }
+  }
+}
+
 /// Sizes with an inverse, and one without.
 TEST(LuFactors, SolvesAndTellsItsCondition) {
   for (const std::size_t n : {1, 5, 64, 65, 90}) {
