@@ -116,6 +116,9 @@ def keep(bench, path, new):
     old = json.loads(path.read_text()) if path.exists() else {"machine": {}, "figures": []}
     kept = [figure for figure in old["figures"] if figure["name"] not in names]
     machine = bench.machine or old["machine"]
+    # Other figures of the file may come from earlier builds.
+    for figure in new:
+        figure["commit"] = machine.get("commit")
     path.write_text(json.dumps({"machine": machine, "figures": kept + new}, indent=1) + "\n")
     return machine
 

@@ -39,6 +39,9 @@ class KilnCase:
         words = [word for change in [*self.changes, *changes] for word in ("--set", change)]
         self.bench.run(["mpirun", "-n", "2", str(self.bench.kiln), command, str(self.file), "--quiet",
                         "--set", f"output.directory={self.folder / name}", *words])
+        if not self.bench.machine:
+            report = next((self.folder / name).glob("*/report.json"))
+            self.bench.machine = json.loads(report.read_text())["provenance"]
         return self.folder / name
 
     def train(self, name, *changes):
