@@ -284,7 +284,8 @@ class RefusedTest(PluginsTest):
     def test_cut_short(self):
         whole = EVERY_CATEGORY.read_bytes()
         cut = self.folder / "cut.so"
-        for size in (4, 63, 64, 500, len(whole) // 10, len(whole) // 2):
+        # What a debugger reads stands at the end, and nobody misses it.
+        for size in (4, 63, 64, 500, len(whole) // 10, len(whole) // 4):
             cut.write_bytes(whole[:size])
             self.refuses(cut, "is cut short")
 
