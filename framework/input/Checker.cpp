@@ -267,7 +267,9 @@ void Checker::check_component(const YamlNode& value, const Entry& entry, const s
     locations_[type_path] = type.location;
     if (type.kind != YamlNode::Kind::scalar) return refuse(type_path, type.location, what_is_given(type));
   } else if (fallback.empty()) {
-    return refuse(path, value.location, value.pairs.empty() ? what_is_given(value) : "the key 'type' is missing");
+    if (value.pairs.empty()) return refuse(path, value.location, what_is_given(value));
+    // Where the first of its keys stands: a block of several files begins in the one that is included.
+    return refuse(path, value.pairs.front().location, "the key 'type' is missing");
   }
   const Registration* registration = nullptr;
   try {

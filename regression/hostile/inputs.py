@@ -254,6 +254,9 @@ def text_cases(file, arguments, text, seed):
         if what == "binary rubbish included":
             # There the fault lies, unless a second `include` is found first.
             place += r"|rubbish\.bin:1:1: "
+        if what == "a very long comment":
+            # Told where the file is included, if it is.
+            place += rf"|: {re.escape(file)}$"
         yield Case(f"{file}: {what}", write, arguments, place)
 
 

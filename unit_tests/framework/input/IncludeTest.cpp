@@ -49,6 +49,13 @@ TEST_F(IncludeTest, MistakesNameTheirFile) {
                    "mean 'title'?"}));
 }
 
+TEST_F(IncludeTest, AMissingTypeIsSoughtWhereTheBlockBegins) {
+  write("base.yaml", "model:\n  spacing: 1 m\n  heat_source:\n    tpye: uniform\n");
+  const Lines lines = mistakes_of("include: base.yaml\nmodel: {heat_source: {power: 1 W}}\n");
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].rfind("base.yaml:4:5: model.heat_source: the key 'type' is missing", 0), 0u) << lines[0];
+}
+
 TEST_F(IncludeTest, WhatCannotBeIncludedIsTold) {
   EXPECT_EQ(mistakes_of("include: [absent.yaml, nowhere.yaml]\n"),
             (Lines{"run.yaml:1:11: include: there is no such file: absent.yaml",

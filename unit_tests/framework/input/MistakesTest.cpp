@@ -52,7 +52,7 @@ TEST_F(MistakesTest, MissingKeys) {
       {"title: x\nmodel:\n  spacing: 1\n  heat_source: gaussian lamp\n",
        {"run.yaml:4:16: model.heat_source.power: missing; expected a power in W above 0"}},
       {"model: {spacing: 1, heat_source: {power: 4}}\n",
-       {"run.yaml:1:21: model.heat_source: the key 'type' is missing; expected a test source, one of: " + sources}},
+       {"run.yaml:1:35: model.heat_source: the key 'type' is missing; expected a test source, one of: " + sources}},
       {model + "output: {point_probes: }\n",
        {"run.yaml:4:10: output.point_probes.points: missing; expected a list of blocks with the keys: unit_of_value, "
         "name, position"}},
