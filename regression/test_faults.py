@@ -202,8 +202,8 @@ class RankTest(FaultTest):
             return False
 
     def await_the_end_of(self, processes):
-        """mpirun may be gone a moment before the last rank it has killed."""
-        deadline = time.monotonic() + 5.0 * SLOWER
+        """A rank of a slower build may take a moment longer to end than mpirun, which has killed it."""
+        deadline = time.monotonic() + 5.0 * (SLOWER - 1.0)
         while left := [process for process in processes if self.alive(process)]:
             self.assertLess(time.monotonic(), deadline, f"still alive: {left}")
             time.sleep(0.01)

@@ -48,10 +48,7 @@ KOKKOS_FORCEINLINE_FUNCTION Borrowed<View> borrowed(const View& view) {
   return view;
 }
 /// The same for interfaces that take a view of the counting kind: copies of what this returns do not count either.
-template <class View>
-View uncounted(const View& view) {
-  return View(view.data(), view.extent(0));
-}
+inline VectorView uncounted(const VectorView& view) { return VectorView(view.data(), view.extent(0)); }
 
 /// Entries of a map on this rank. The member function that says so was renamed between Trilinos 13 and 14.
 inline LocalIndex local_size(const Map& map) { return map.getMaxLocalIndex() + 1; }
