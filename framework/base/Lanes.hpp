@@ -36,6 +36,15 @@ inline FirstTwoLanes first_two_of_triples(const double* triples) {
           __builtin_shufflevector(second, c, 0, 1, 2, 3, 4, 8, 11, 14)};
 }
 
+/// Whether any of eight numbers differs from its counterpart in a bit.
+using LaneBits = long long __attribute__((vector_size(lane_count * sizeof(long long))));
+inline LaneBits differing_bits(const Lanes& a, const Lanes& b) {
+  return reinterpret_cast<const LaneBits&>(a) ^ reinterpret_cast<const LaneBits&>(b);
+}
+inline bool any_bit(const LaneBits& x) {
+  return (((x[0] | x[4]) | (x[2] | x[6])) | ((x[1] | x[5]) | (x[3] | x[7]))) != 0;
+}
+
 inline double lane_sum(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
 
 }  // namespace kiln

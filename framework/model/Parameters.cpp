@@ -37,11 +37,11 @@ void Parameters::mirror(const Parameters& other) {
 }
 
 const Parameter& Parameters::find(std::string_view name) const {
-  std::vector<std::string> known;
   for (const Parameter& parameter : parameters_) {
     if (parameter.name == name) return parameter;
-    known.push_back(parameter.name);
   }
+  std::vector<std::string> known;
+  for (const Parameter& parameter : parameters_) known.push_back(parameter.name);
   throw InputError(
       "", fmt::format("the model has no parameter '{}'", name),
       known.empty() ? "no parameter at all: the model lists none" : fmt::format("one of: {}", fmt::join(known, ", ")),

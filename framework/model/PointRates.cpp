@@ -1,9 +1,16 @@
 #include "framework/model/PointRates.hpp"
 
 #include <Tpetra_Map.hpp>
+#include <string>
+
+#include "framework/base/Loop.hpp"
 
 namespace kiln {
 namespace {
+
+// Labels made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string take_label = "kiln::model::take point";
+const std::string put_label = "kiln::model::put point";
 
 class OneAfterTheOther final : public PointRates {
  public:
@@ -15,8 +22,9 @@ class OneAfterTheOther final : public PointRates {
     if (points_.count() > 0) points_.set(0, model_.parameters());
   }
 
-  void rates(ConstMatrixView u, double time, MatrixView f) override {
+  void rates(ConstMatrixView u, double time, const PointMask& wanted, MatrixView f) override {
     for (std::size_t point = 0; point < points_.count(); ++point) {
+      if (wanted[point] == 0) continue;
       points_.set(point, model_.parameters());
       take_point(u, point, u_);
       model_.rate(u_, time, f_);
@@ -37,14 +45,14 @@ std::unique_ptr<PointRates> one_after_the_other(Model& model, const ParameterPoi
 }
 
 void take_point(ConstMatrixView values, std::size_t point, VectorView one) {
-  Kokkos::parallel_for(
-      "kiln::model::take point", RangePolicy(0, static_cast<LocalIndex>(one.extent(0))),
+  loop(
+      take_label, static_cast<LocalIndex>(one.extent(0)),
       KOKKOS_LAMBDA(const LocalIndex i) { one(i) = values(point, i); });
 }
 
 void put_point(ConstVectorView one, std::size_t point, MatrixView values) {
-  Kokkos::parallel_for(
-      "kiln::model::put point", RangePolicy(0, static_cast<LocalIndex>(one.extent(0))),
+  loop(
+      put_label, static_cast<LocalIndex>(one.extent(0)),
       KOKKOS_LAMBDA(const LocalIndex i) { values(point, i) = one(i); });
 }
 

@@ -1,14 +1,19 @@
 #include <Tpetra_CrsMatrix.hpp>
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "framework/base/Loop.hpp"
 #include "physics/sph/HeatModel.hpp"
 #include "physics/sph/PairRows.hpp"
 
 namespace kiln {
 namespace {
+
+// A label made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
+const std::string diagonal_label = "kiln::sph::rate jacobian diagonal";
 
 /// Pairs whose derivatives are held at once.
 constexpr LocalIndex block_pairs = 64;
@@ -42,8 +47,8 @@ void HeatModel::rate_jacobian_diagonal(ConstVectorView u, double time, VectorVie
   const auto states = states_;
   const auto sums = conductances_;
   const auto masses = domain_.masses;
-  Kokkos::parallel_for(
-      "kiln::sph::rate jacobian diagonal", RangePolicy(0, row_count()), KOKKOS_LAMBDA(LocalIndex i) {
+  loop(
+      diagonal_label, row_count(), KOKKOS_LAMBDA(LocalIndex i) {
         const ThermalState<double>& own = states(i);
         diagonal(i) = 4.0 * own.volume * sums(i) / (masses(i) * own.specific_heat);
       });

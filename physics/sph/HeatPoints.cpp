@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "framework/base/Loop.hpp"
 #include "framework/model/PointRates.hpp"
@@ -35,25 +36,27 @@ class HeatModel::AtPoints final : public PointRates {
         fluxes_("heat flux of points", model.heated_.extent(0), points.count()),
         absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())),
         pair_fluxes_("pair sums of points", groups_ * static_cast<std::size_t>(model.row_count())),
-        summed_(points.count() * static_cast<std::size_t>(model.source_count())) {
+        summed_(groups_, false) {
     if (points_.count() > 0) points_.set(0, model_.parameters_);
   }
 
-  void rates(ConstMatrixView u, double time, MatrixView f) override {
+  void rates(ConstMatrixView u, double time, const PointMask& wanted, MatrixView f) override {
     if (u.extent(0) != points_.count() || f.extent(0) != points_.count() || !u.span_is_contiguous()) {
       throw std::invalid_argument("HeatModel: arrays of another number of points, or with gaps");
     }
     model_.check("rates", u.extent(1), f.extent(1));
     if (!(time == absorbed_time_)) update_absorbed(time);
-    const ConstVectorView all(u.data(), u.size());
-    if (!summed_.is(all)) {
-      for (std::size_t group = 0; group < groups_; ++group) {
+    for (std::size_t group = 0; group < groups_; ++group) {
+      if (!any_of(wanted, group * lane_count, width(group))) continue;
+      // As LastState has it: the first residual of a step is asked for where the step before ended.
+      if (!summed_[group] || !are_of(group, u)) {
+        summed_[group] = false;
         update_states(group, u);
         sum_pairs(group);
+        summed_[group] = true;
       }
-      summed_.remember(all);
+      form_rates(group, f);
     }
-    for (std::size_t group = 0; group < groups_; ++group) form_rates(group, f);
   }
 
  private:
@@ -84,6 +87,24 @@ class HeatModel::AtPoints final : public PointRates {
     absorbed_time_ = time;
   }
 
+  /// Zero where the group has no point.
+  static Lanes temperatures(const ConstMatrixView& u, std::size_t first_point, std::size_t points, LocalIndex source) {
+    if (points == lane_count) return lanes_at(&u(first_point, source));
+    Lanes temperature = {};
+    for (std::size_t lane = 0; lane < points; ++lane) temperature[lane] = u(first_point + lane, source);
+    return temperature;
+  }
+
+  /// Whether a group's states are those of these temperatures.
+  bool are_of(std::size_t group, const ConstMatrixView& u) const {
+    const std::size_t first = group * static_cast<std::size_t>(model_.source_count());
+    LaneBits differing = {};
+    for (LocalIndex j = 0; j < model_.source_count(); ++j) {
+      differing |= differing_bits(temperatures(u, group * lane_count, width(group), j), states_(first + j).temperature);
+    }
+    return !any_bit(differing);
+  }
+
   void update_states(std::size_t group, const ConstMatrixView& u) {
     const auto states = borrowed(states_);
     const auto specific_heats = borrowed(specific_heats_);
@@ -93,13 +114,8 @@ class HeatModel::AtPoints final : public PointRates {
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
     loop(
         states_label, model_.source_count(), KOKKOS_LAMBDA(LocalIndex j) {
-          Lanes temperature = {};
-          if (points == lane_count) {
-            temperature = lanes_at(&u(first_point, j));
-          } else {
-            for (std::size_t lane = 0; lane < points; ++lane) temperature[lane] = u(first_point + lane, j);
-          }
-          const ThermalLanes state = thermal_lanes(table, temperature, all_lanes(masses(j)));
+          const ThermalLanes state =
+              thermal_lanes(table, temperatures(u, first_point, points, j), all_lanes(masses(j)));
           states(first + j) = {state.temperature, state.resistivity, state.volume};
           if (static_cast<std::size_t>(j) < rows) {
             store_lanes(&specific_heats(group * rows + j, 0), state.specific_heat);
@@ -150,8 +166,8 @@ class HeatModel::AtPoints final : public PointRates {
   LaneView specific_heats_;                   ///< group by group: of the rows
   MatrixView fluxes_;                         ///< at the heated rows, of each point
   LaneView absorbed_;                         ///< as specific_heats_, at absorbed_time_
-  LaneView pair_fluxes_;                      ///< as specific_heats_, at summed_
-  LastState summed_;
+  LaneView pair_fluxes_;                      ///< as specific_heats_, of states_
+  std::vector<char> summed_;                  ///< of each group: whether its states and pair sums were made
   double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -32,73 +32,102 @@ constexpr std::size_t short_product = 1 << 15;
 constexpr int narrow = 16;
 
 #ifdef KILN_LANES
-/// Rows i … i + Blocks · lane_count − 1 of y = b + A x.
+/// Rows i … i + Blocks · lane_count − 1 of y = b + A x; the last block ends at row `end` and may begin in the one
+/// before it. Without b: y = A x.
 template <int Blocks>
-void affine_rows(const double* b, const ConstMatrixView& a, const double* x, double* y, std::size_t i) {
-  Lanes sums[Blocks];
-  for (int block = 0; block < Blocks; ++block) sums[block] = lanes_at(b + i + block * lane_count);
-  for (std::size_t k = 0; k < a.extent(1); ++k) {
-    const double* const column = &a(i, k);
-    const Lanes factor = all_lanes(x[k]);
-    for (int block = 0; block < Blocks; ++block) sums[block] += lanes_at(column + block * lane_count) * factor;
+void affine_rows(const double* b, const ConstMatrixView& a, const double* x, double* y, std::size_t i,
+                 std::size_t end) {
+  std::size_t first[Blocks];
+  for (int block = 0; block < Blocks; ++block) first[block] = i + block * lane_count;
+  first[Blocks - 1] = std::min(first[Blocks - 1], end - lane_count);
+  Lanes sums[Blocks] = {};
+  if (b != nullptr) {
+    for (int block = 0; block < Blocks; ++block) sums[block] = lanes_at(b + first[block]);
   }
-  for (int block = 0; block < Blocks; ++block) store_lanes(y + i + block * lane_count, sums[block]);
+  for (std::size_t k = 0; k < a.extent(1); ++k) {
+    const double* const column = &a(0, k);
+    const Lanes factor = all_lanes(x[k]);
+    for (int block = 0; block < Blocks; ++block) sums[block] += lanes_at(column + first[block]) * factor;
+  }
+  for (int block = 0; block < Blocks; ++block) store_lanes(y + first[block], sums[block]);
 }
 
-/// The products of as many columns with x.
+/// The same of all rows, at least lane_count.
+void affine_by_lanes(const double* b, const ConstMatrixView& a, const double* x, double* y) {
+  const std::size_t rows = a.extent(0);
+  std::size_t i = 0;
+  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4>(b, a, x, y, i, rows);
+  switch ((rows - i + lane_count - 1) / lane_count) {
+    case 1:
+      return affine_rows<1>(b, a, x, y, i, rows);
+    case 2:
+      return affine_rows<2>(b, a, x, y, i, rows);
+    case 3:
+      return affine_rows<3>(b, a, x, y, i, rows);
+    case 4:
+      return affine_rows<4>(b, a, x, y, i, rows);
+  }
+}
+
+/// The products of as many columns with x; `tail`: the last lane_count entries of x, zero where those before it have
+/// them.
 template <int Columns>
-void column_products(const double* column, std::size_t stride, std::size_t rows, const double* x, double* y) {
+void column_products(const double* column, std::size_t stride, std::size_t rows, const double* x, const Lanes& tail,
+                     double* y) {
   Lanes sums[Columns] = {};
   std::size_t i = 0;
   for (; i + lane_count <= rows; i += lane_count) {
     const Lanes factor = lanes_at(x + i);
     for (int c = 0; c < Columns; ++c) sums[c] += lanes_at(column + c * stride + i) * factor;
   }
-  for (int c = 0; c < Columns; ++c) y[c] = lane_sum(sums[c]);
-  for (; i < rows; ++i) {
-    for (int c = 0; c < Columns; ++c) y[c] += column[c * stride + i] * x[i];
+  if (i < rows) {
+    for (int c = 0; c < Columns; ++c) sums[c] += lanes_at(column + c * stride + rows - lane_count) * tail;
   }
+  for (int c = 0; c < Columns; ++c) y[c] = lane_sum(sums[c]);
+}
+
+/// y = Aᵀ x with a matrix of at least lane_count rows.
+void transposed_by_lanes(const ConstMatrixView& a, const double* x, double* y) {
+  const std::size_t rows = a.extent(0), columns = a.extent(1), stride = leading_dimension(a);
+  Lanes tail = lanes_at(x + rows - lane_count);
+  for (std::size_t lane = 0; lane < lane_count - rows % lane_count; ++lane) tail[lane] = 0.0;
+  std::size_t k = 0;
+  for (; k + 5 <= columns; k += 5) column_products<5>(a.data() + k * stride, stride, rows, x, tail, y + k);
+  for (; k < columns; ++k) column_products<1>(a.data() + k * stride, stride, rows, x, tail, y + k);
 }
 #endif
 
-}  // namespace
-
-void affine(const ConstVectorView& b, const ConstMatrixView& a, const double* x, double* y) {
-  const std::size_t rows = a.extent(0), columns = a.extent(1);
-  if (rows * columns > short_product) {
-    std::copy_n(b.data(), rows, y);
-    Blas().GEMV(Teuchos::NO_TRANS, static_cast<int>(rows), static_cast<int>(columns), 1.0, a.data(),
-                leading_dimension(a), x, 1, 1.0, y, 1);
-    return;
-  }
-  std::size_t i = 0;
+/// y = b + A x without BLAS; without b: y = A x.
+void short_affine(const double* b, const ConstMatrixView& a, const double* x, double* y) {
 #ifdef KILN_LANES
-  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4>(b.data(), a, x, y, i);
-  for (; i + lane_count <= rows; i += lane_count) affine_rows<1>(b.data(), a, x, y, i);
+  if (a.extent(0) >= lane_count) return affine_by_lanes(b, a, x, y);
 #endif
-  for (; i < rows; ++i) {
-    double sum = b(i);
-    for (std::size_t k = 0; k < columns; ++k) sum += a(i, k) * x[k];
+  for (std::size_t i = 0; i < a.extent(0); ++i) {
+    double sum = b == nullptr ? 0.0 : b[i];
+    for (std::size_t k = 0; k < a.extent(1); ++k) sum += a(i, k) * x[k];
     y[i] = sum;
   }
 }
 
+}  // namespace
+
+void affine(const ConstVectorView& b, const ConstMatrixView& a, const double* x, double* y) {
+  if (a.size() <= short_product) return short_affine(b.data(), a, x, y);
+  std::copy_n(b.data(), a.extent(0), y);
+  Blas().GEMV(Teuchos::NO_TRANS, rows(a), columns(a), 1.0, a.data(), leading_dimension(a), x, 1, 1.0, y, 1);
+}
+
 void transposed(const ConstMatrixView& a, const double* x, double* y) {
-  const std::size_t rows = a.extent(0), columns = a.extent(1);
-  if (rows * columns > short_product) {
-    Blas().GEMV(Teuchos::TRANS, static_cast<int>(rows), static_cast<int>(columns), 1.0, a.data(), leading_dimension(a),
-                x, 1, 0.0, y, 1);
+  if (a.size() > short_product) {
+    Blas().GEMV(Teuchos::TRANS, rows(a), columns(a), 1.0, a.data(), leading_dimension(a), x, 1, 0.0, y, 1);
     return;
   }
-  std::size_t k = 0;
 #ifdef KILN_LANES
-  const std::size_t stride = leading_dimension(a);
-  for (; k + 5 <= columns; k += 5) column_products<5>(a.data() + k * stride, stride, rows, x, y + k);
-  for (; k < columns; ++k) column_products<1>(a.data() + k * stride, stride, rows, x, y + k);
+  if (a.extent(0) >= lane_count) return transposed_by_lanes(a, x, y);
 #endif
-  for (; k < columns; ++k) {
+  for (std::size_t k = 0; k < a.extent(1); ++k) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < rows; ++i) sum += a(i, k) * x[i];
+    for (std::size_t i = 0; i < a.extent(0); ++i) sum += a(i, k) * x[i];
     y[k] = sum;
   }
 }
@@ -123,12 +152,10 @@ void product(Transpose transpose_a, Transpose transpose_b, double alpha, const C
   if (transpose_b == Transpose::no && alpha == 1.0 && beta == 0.0 && a.size() <= short_product &&
       columns(c) <= narrow) {
     for (int j = 0; j < columns(c); ++j) {
-      const VectorView column = Kokkos::subview(c, Kokkos::ALL, j);
       if (transpose_a == Transpose::yes) {
-        transposed(a, &b(0, j), column.data());
+        transposed(a, &b(0, j), &c(0, j));
       } else {
-        scale(0.0, column);
-        affine(column, a, &b(0, j), column.data());
+        short_affine(nullptr, a, &b(0, j), &c(0, j));
       }
     }
     return;

@@ -1,60 +1,73 @@
 #pragma once
 
-#include <algorithm>
-
 #include "framework/base/Lanes.hpp"
 #include "framework/base/LinearAlgebra.hpp"
+#include "framework/model/PointRates.hpp"
 
 namespace kiln {
 
-/// As many points as go through a product together: a vector, where the host has them (Lanes.hpp), else a double.
+/// One number of a point, of those that several points have next to each other.
+struct OnePoint {
+  using Numbers = double;
+  static Numbers at(const double* numbers) { return *numbers; }
+  static void store(double* numbers, Numbers value) { *numbers = value; }
+};
+
 #ifdef KILN_LANES
-inline constexpr std::size_t points_at_once = lane_count;
-inline Lanes at_once(const double* values) { return lanes_at(values); }
-inline void store_at_once(double* values, const Lanes& lanes) { store_lanes(values, lanes); }
-#else
-inline constexpr std::size_t points_at_once = 1;
-inline double at_once(const double* values) { return *values; }
-inline void store_at_once(double* values, double value) { *values = value; }
+/// The same of eight points at once.
+struct EightPoints {
+  using Numbers = Lanes;
+  static Numbers at(const double* numbers) { return lanes_at(numbers); }
+  static void store(double* numbers, const Numbers& lanes) { store_lanes(numbers, lanes); }
+};
 #endif
 
-/// y_p = b_p + A x_p of every point p, for one matrix A. x: points × columns of A; b, y: points × rows, with the
+/// Calls body(first point, EightPoints()) or body(point, OnePoint()), as the host's vectors and the number of points
+/// have it, for the wanted points and perhaps for others.
+template <class Body>
+void over_points(std::size_t points, const PointMask& wanted, const Body& body) {
+  std::size_t point = 0;
+#ifdef KILN_LANES
+  for (; point + lane_count <= points; point += lane_count) {
+    if (any_of(wanted, point, lane_count)) body(point, EightPoints());
+  }
+#endif
+  for (; point < points; ++point) {
+    if (wanted[point] != 0) body(point, OnePoint());
+  }
+}
+
+/// y_p = b_p + A x_p of the wanted points p, for one matrix A. x: points × columns of A; b, y: points × rows, with the
 /// points' values next to each other. BLAS packs its operands anew in each call, which costs more than so narrow a
 /// product.
 class PointProduct {
  public:
   explicit PointProduct(ConstMatrixView matrix) : matrix_(matrix) {}
 
-  void add(ConstMatrixView b, ConstMatrixView x, MatrixView y) const {
-    std::size_t point = 0;
-    for (; point + points_at_once <= y.extent(0); point += points_at_once) {
+  void add(ConstMatrixView b, ConstMatrixView x, const PointMask& wanted, MatrixView y) const {
+    over_points(y.extent(0), wanted, [&](std::size_t point, auto width) {
+      using Width = decltype(width);
       std::size_t row = 0;
-      for (; row + rows_at_once <= matrix_.extent(0); row += rows_at_once) add<rows_at_once>(point, row, b, x, y);
-      for (; row < matrix_.extent(0); ++row) add<1>(point, row, b, x, y);
-    }
-    for (; point < y.extent(0); ++point) {
-      for (std::size_t row = 0; row < matrix_.extent(0); ++row) {
-        double sum = b(point, row);
-        for (std::size_t k = 0; k < matrix_.extent(1); ++k) sum += matrix_(row, k) * x(point, k);
-        y(point, row) = sum;
-      }
-    }
+      for (; row + rows_at_once <= matrix_.extent(0); row += rows_at_once)
+        add<Width, rows_at_once>(point, row, b, x, y);
+      for (; row < matrix_.extent(0); ++row) add<Width, 1>(point, row, b, x, y);
+    });
   }
 
  private:
   static constexpr std::size_t rows_at_once = 4;
 
-  template <std::size_t Rows>
+  template <class Width, std::size_t Rows>
   void add(std::size_t point, std::size_t row, const ConstMatrixView& b, const ConstMatrixView& x,
            const MatrixView& y) const {
-    decltype(at_once(nullptr)) sums[Rows];
-    for (std::size_t r = 0; r < Rows; ++r) sums[r] = at_once(&b(point, row + r));
+    typename Width::Numbers sums[Rows];
+    for (std::size_t r = 0; r < Rows; ++r) sums[r] = Width::at(&b(point, row + r));
     for (std::size_t k = 0; k < matrix_.extent(1); ++k) {
-      const auto factor = at_once(&x(point, k));
+      const auto factor = Width::at(&x(point, k));
       const double* entries = &matrix_(row, k);
       for (std::size_t r = 0; r < Rows; ++r) sums[r] += entries[r] * factor;
     }
-    for (std::size_t r = 0; r < Rows; ++r) store_at_once(&y(point, row + r), sums[r]);
+    for (std::size_t r = 0; r < Rows; ++r) Width::store(&y(point, row + r), sums[r]);
   }
 
   ConstMatrixView matrix_;
@@ -77,32 +90,31 @@ class PointMatrices {
     }
   }
 
-  /// y_p = A_pᵀ x_p of every point p. x: points × rows; y: points × columns.
-  void multiply_transposed(ConstMatrixView x, MatrixView y) const {
-    std::size_t point = 0;
-    for (; point + points_at_once <= points_; point += points_at_once) {
-      for (std::size_t k = 0; k < columns_; ++k) {
-        // Two sums, since one would wait for itself.
-        decltype(at_once(nullptr)) even{}, odd{};
-        std::size_t i = 0;
-        for (; i + 2 <= rows_; i += 2) {
-          even += at_once(&entries_(point, k * rows_ + i)) * at_once(&x(point, i));
-          odd += at_once(&entries_(point, k * rows_ + i + 1)) * at_once(&x(point, i + 1));
-        }
-        if (i < rows_) even += at_once(&entries_(point, k * rows_ + i)) * at_once(&x(point, i));
-        store_at_once(&y(point, k), even + odd);
-      }
-    }
-    for (; point < points_; ++point) {
-      for (std::size_t k = 0; k < columns_; ++k) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < rows_; ++i) sum += entries_(point, k * rows_ + i) * x(point, i);
-        y(point, k) = sum;
-      }
-    }
+  /// y_p = A_pᵀ x_p of the wanted points p. x: points × rows; y: points × columns.
+  void multiply_transposed(ConstMatrixView x, const PointMask& wanted, MatrixView y) const {
+    over_points(points_, wanted, [&](std::size_t point, auto width) {
+      using Width = decltype(width);
+      std::size_t k = 0;
+      for (; k + columns_at_once <= columns_; k += columns_at_once) multiply<Width, columns_at_once>(point, k, x, y);
+      for (; k < columns_; ++k) multiply<Width, 1>(point, k, x, y);
+    });
   }
 
  private:
+  /// Sums that do not wait for each other, and share what they read of x.
+  static constexpr std::size_t columns_at_once = 5;
+
+  template <class Width, std::size_t Columns>
+  void multiply(std::size_t point, std::size_t column, const ConstMatrixView& x, const MatrixView& y) const {
+    typename Width::Numbers sums[Columns] = {};
+    for (std::size_t i = 0; i < rows_; ++i) {
+      const auto factor = Width::at(&x(point, i));
+      for (std::size_t c = 0; c < Columns; ++c)
+        sums[c] += Width::at(&entries_(point, (column + c) * rows_ + i)) * factor;
+    }
+    for (std::size_t c = 0; c < Columns; ++c) Width::store(&y(point, column + c), sums[c]);
+  }
+
   std::size_t points_, rows_, columns_;
   MatrixView entries_;
 };

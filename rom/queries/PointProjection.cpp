@@ -5,16 +5,9 @@
 #include <cmath>
 
 #include "framework/base/Error.hpp"
-#include "framework/base/Loop.hpp"
 #include "framework/method/Divergence.hpp"
 
 namespace kiln {
-namespace {
-
-// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
-const std::string residuals_label = "kiln::rom::residuals of points";
-
-}  // namespace
 
 PointProjection::PointProjection(Projection& projection, const ParameterPoints& points)
     : projection_(projection),
@@ -34,6 +27,7 @@ PointProjection::PointProjection(Projection& projection, const ParameterPoints& 
       g_("kiln::rom::reduced residuals of points", points.count(), size_),
       step_("kiln::rom::updates of points", points.count(), size_),
       norms_(points.count()),
+      everyone_(points.count(), 1),
       iterates_(points.count()),
       point_state_("kiln::rom::state of a point", states_.size()),
       jacobian_tangent_("kiln::rom::J Phi of a point", rows_, size_),
@@ -41,8 +35,8 @@ PointProjection::PointProjection(Projection& projection, const ParameterPoints& 
       inverse_("kiln::rom::transposed inverse reduced Jacobian of a point", size_, size_) {}
 
 void PointProjection::evaluate(ConstMatrixView x, double time, MatrixView u, MatrixView f) {
-  states_.states(x, state_);
-  rates_->rates(state_, time, f);
+  states_.states(x, everyone_, state_);
+  rates_->rates(state_, time, everyone_, f);
   std::copy_n(state_.data(), u.size(), u.data());
 }
 
@@ -72,7 +66,7 @@ void PointProjection::linearise_point(std::size_t point, const StepResidual& res
 }
 
 void PointProjection::linearise(const StepResidual& residual, MatrixView x, std::vector<Point>& points) {
-  if (residual.gamma != 0.0) states_.states(x, state_);
+  if (residual.gamma != 0.0) states_.states(x, everyone_, state_);
   for (std::size_t point = 0; point < points.size(); ++point) {
     if (points[point].divergence) continue;
     try {
@@ -90,28 +84,33 @@ void PointProjection::linearise(const StepResidual& residual, MatrixView x, std:
 void PointProjection::reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history,
                                       ConstMatrixView f) {
   const double alpha = residual.alpha;
-  // The rows come first among the sources.
-  const double* u = state_.data();
-  const double* rate = f.data();
-  const double* known = history.data();
-  double* r = residual_.data();
-  loop(
-      residuals_label, static_cast<LocalIndex>(residual_.size()),
-      KOKKOS_LAMBDA(const LocalIndex i) { r[i] = alpha * u[i] - gamma * rate[i] + known[i]; });
-  test_.multiply_transposed(residual_, g_);
+  over_points(norms_.size(), iterates_, [&](std::size_t point, auto width) {
+    using Width = decltype(width);
+    // The rows come first among the sources.
+    for (std::size_t i = 0; i < rows_; ++i) {
+      Width::store(&residual_(point, i), alpha * Width::at(&state_(point, i)) - gamma * Width::at(&f(point, i)) +
+                                             Width::at(&history(point, i)));
+    }
+  });
+  test_.multiply_transposed(residual_, iterates_, g_);
+  over_points(norms_.size(), iterates_, [&](std::size_t point, auto width) {
+    using Width = decltype(width);
+    typename Width::Numbers sum{};
+    for (std::size_t k = 0; k < size_; ++k) sum += Width::at(&g_(point, k)) * Width::at(&g_(point, k));
+    Width::store(&norms_[point], sum);
+  });
   for (std::size_t point = 0; point < norms_.size(); ++point) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < size_; ++k) sum += g_(point, k) * g_(point, k);
-    norms_[point] = std::sqrt(sum);
+    if (iterates_[point] != 0) norms_[point] = std::sqrt(norms_[point]);
   }
 }
 
 void PointProjection::update(MatrixView x) {
-  inverse_transposed_.multiply_transposed(g_, step_);
+  inverse_transposed_.multiply_transposed(g_, iterates_, step_);
   const MatrixView own = own_coordinates(x, trial_);
   for (std::size_t k = 0; k < size_; ++k) {
     for (std::size_t point = 0; point < iterates_.size(); ++point) {
-      if (iterates_[point] != 0) own(point, k) -= step_(point, k);
+      const double step = step_(point, k);
+      own(point, k) -= iterates_[point] != 0 ? step : 0.0;
     }
   }
 }
@@ -159,8 +158,8 @@ void PointProjection::iterate(const StepResidual& residual, ConstMatrixView hist
     }
     if (!any) return;
     update(x);
-    states_.states(x, state_);
-    rates_->rates(state_, residual.time, f);
+    states_.states(x, iterates_, state_);
+    rates_->rates(state_, residual.time, iterates_, f);
     reduce_residual(residual, residual.gamma, history, f);
     watch(residual, x, f, points);
   }
@@ -172,17 +171,17 @@ void PointProjection::solve(const StepResidual& residual, ConstMatrixView histor
   const bool serves = age_ >= 0 && frozen_alpha_ == residual.alpha && frozen_gamma_ == residual.gamma;
   if (!serves || (!is_explicit && age_ >= settings_.refresh)) linearise(residual, x, points);
   ++age_;
-  states_.states(x, state_);
+  for (std::size_t point = 0; point < points.size(); ++point) iterates_[point] = points[point].divergence ? 0 : 1;
+  states_.states(x, iterates_, state_);
   if (is_explicit) {
     // The rate's factor is zero; any finite array may stand for it.
     reduce_residual(residual, 0.0, history, history);
   } else {
-    rates_->rates(state_, residual.time, f);
+    rates_->rates(state_, residual.time, iterates_, f);
     reduce_residual(residual, residual.gamma, history, f);
   }
   for (std::size_t point = 0; point < points.size(); ++point) {
     points[point].solve = {};
-    iterates_[point] = points[point].divergence ? 0 : 1;
     points[point].solve.first_norm = norms_[point];
     points[point].solve.residuals = 1;
   }

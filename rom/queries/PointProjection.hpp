@@ -14,7 +14,7 @@ namespace kiln {
 
 /// The equations of a Projection for several parameter points at once. Each point has a frozen Jacobian, a test basis
 /// and factors of its own and counts its own iterations; states, rates and residuals of all points are found in one
-/// go. A point that has converged keeps its coordinates and idles until the last one has; its lane then finds the same
+/// go. A point that has converged keeps its coordinates; while others of its eight iterate, its lane finds the same
 /// state and rate again.
 class PointProjection {
  public:
@@ -40,7 +40,7 @@ class PointProjection {
   void linearise_point(std::size_t point, const StepResidual& residual);
   void iterate(const StepResidual& residual, ConstMatrixView history, MatrixView x, MatrixView f,
                std::vector<Point>& points);
-  /// Fills g_ = Ψᵀr and norms_, from state_ and the rate times γ.
+  /// Fills g_ = Ψᵀr and norms_ of the points that iterate, from state_ and the rate times γ.
   void reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history, ConstMatrixView f);
   /// x ← x − (ΨᵀJ̃Φ)⁻¹ g_ of the points that iterate.
   void update(MatrixView x);
@@ -63,11 +63,12 @@ class PointProjection {
   PointMatrices test_;                ///< Ψ of each point
   PointMatrices inverse_transposed_;  ///< (ΨᵀJ̃Φ)⁻ᵀ of each point
 
-  MatrixView state_;            ///< points by sources × components
-  MatrixView residual_;         ///< points by rows × components
-  MatrixView g_, step_;         ///< points × M
-  std::vector<double> norms_;   ///< ‖Ψᵀr‖₂ of each point
-  std::vector<char> iterates_;  ///< of each point: 1 until it has converged
+  MatrixView state_;           ///< points by sources × components
+  MatrixView residual_;        ///< points by rows × components
+  MatrixView g_, step_;        ///< points × M
+  std::vector<double> norms_;  ///< ‖Ψᵀr‖₂ of each point
+  PointMask everyone_;
+  PointMask iterates_;  ///< those that have not converged yet
 
   // Of one point.
   VectorView point_state_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "framework/model/PointRates.hpp"
 #include "rom/queries/PointProducts.hpp"
 
 namespace kiln {
@@ -26,8 +25,8 @@ void PointStates::begin(ConstMatrixView x) {
   }
 }
 
-void PointStates::states(ConstMatrixView x, MatrixView u) const {
-  PointProduct(tangent_).add(beginning_, own_coordinates(x, space_), u);
+void PointStates::states(ConstMatrixView x, const PointMask& wanted, MatrixView u) const {
+  PointProduct(tangent_).add(beginning_, own_coordinates(x, space_), wanted, u);
 }
 
 }  // namespace kiln

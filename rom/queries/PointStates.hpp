@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "framework/model/PointRates.hpp"
 #include "rom/basis/TrialSpace.hpp"
 
 namespace kiln {
@@ -17,7 +18,8 @@ class PointStates {
 
   /// Takes b_p from the coordinates of windows past.
   void begin(ConstMatrixView x);
-  void states(ConstMatrixView x, MatrixView u) const;
+  /// Of the wanted points, and perhaps of others.
+  void states(ConstMatrixView x, const PointMask& wanted, MatrixView u) const;
   /// Φ.
   ConstMatrixView tangent() const { return tangent_; }
   /// Entries of one point's state.

@@ -12,6 +12,7 @@ namespace kiln {
 ReducedBlock::ReducedBlock(PetrovGalerkin& method, const LinearMultistep& scheme, AdvancesTogether::Request request)
     : method_(method),
       points_(std::move(request.points)),
+      everyone_(points_.count(), 1),
       places_(std::move(request.places)),
       history_(scheme, request.step, points_.count(), local_size(*method.coordinates())),
       x_("kiln::rom::coordinates of points", points_.count(), local_size(*method.coordinates())),

@@ -21,7 +21,7 @@ class ReducedBlock final : public PointBlock {
 
   void start() override;
   void advance(int step, double time) override;
-  void tell(MatrixView u) const override { told_->states(x_, u); }
+  void tell(MatrixView u) const override { told_->states(x_, everyone_, u); }
   const std::vector<PointOutcome>& outcomes() const override { return outcomes_; }
 
  private:
@@ -32,6 +32,7 @@ class ReducedBlock final : public PointBlock {
 
   PetrovGalerkin& method_;
   ParameterPoints points_;
+  PointMask everyone_;
   std::vector<LocalIndex> places_;
   PointHistory history_;
   MatrixView x_;  ///< points × coordinates

@@ -250,7 +250,7 @@ TEST(PointRates, OfAModelThatHasOnlyItsRate) {
   for (std::size_t point = 0; point < 3; ++point) {
     for (std::size_t i = 0; i < size; ++i) u(point, i) = std::sin(0.3 * static_cast<double>(i * (point + 1)));
   }
-  model->at_points(points)->rates(u, 0.1, f);
+  model->at_points(points)->rates(u, 0.1, {1, 1, 1}, f);
   const VectorView one("one", size), rate("rate", rows);
   for (std::size_t point = 0; point < 3; ++point) {
     take_point(u, point, one);
@@ -263,7 +263,7 @@ TEST(PointRates, TakeEachPointsParameters) {
   const auto model = test::model_of(Case(), self());
   const ParameterPoints points{{"power"}, {{10.0}, {0.0}}};
   const MatrixView u("u", 2, local_size(*model->sources())), f("f", 2, local_size(*model->rows()));
-  model->at_points(points)->rates(u, 0.05, f);
+  model->at_points(points)->rates(u, 0.05, {1, 1}, f);
   double largest[2] = {};
   for (std::size_t i = 0; i < f.extent(1); ++i) {
     for (int point = 0; point < 2; ++point) largest[point] = std::max(largest[point], std::abs(f(point, i)));

@@ -256,7 +256,7 @@ TEST(HeatClusters, TakeParametersAlongAndServeManyPoints) {
     one(i) = u(0, i) = u(1, i) =
         mean(clusters, clustered->sources()->getGlobalElement(static_cast<LocalIndex>(i)), rough_temperature);
   }
-  clustered->at_points(points)->rates(u, time, f);
+  clustered->at_points(points)->rates(u, time, {1, 1}, f);
   for (std::size_t point = 0; point < 2; ++point) {
     points.set(point, clustered->parameters());
     clustered->rate(one, time, rate);

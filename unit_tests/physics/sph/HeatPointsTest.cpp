@@ -25,6 +25,7 @@ struct Points {
     u(0, 20) = 6000.0;
     u(1, 20) = 200.0;
   }
+  PointMask all() const { return PointMask(parameters.count(), 1); }
   ParameterPoints parameters;
   MatrixView u, f;
 };
@@ -33,7 +34,7 @@ void expect_rates_of_each(Model& model, const Points& points, double time, doubl
   const auto rates = model.at_points(points.parameters);
   // Twice: what is kept of a time must serve again, and not another time.
   for (const double at : {time, 2.0 * time, time}) {
-    rates->rates(points.u, at, points.f);
+    rates->rates(points.u, at, points.all(), points.f);
     const VectorView u("u", points.u.extent(1)), f("f", points.f.extent(1));
     for (std::size_t point = 0; point < points.parameters.count(); ++point) {
       points.parameters.set(point, model.parameters());
@@ -64,11 +65,11 @@ TEST(HeatPoints, ARateThatIsNotANumberStaysWithItsPoint) {
   const auto model = HeatCase().model(alone());
   Points points(*model);
   const auto rates = model->at_points(points.parameters);
-  rates->rates(points.u, 1e-4, points.f);
+  rates->rates(points.u, 1e-4, points.all(), points.f);
   MatrixView before("before", points.f.extent(0), points.f.extent(1));
   Kokkos::deep_copy(before, points.f);
   points.u(5, 40) = std::nan("");
-  rates->rates(points.u, 1e-4, points.f);
+  rates->rates(points.u, 1e-4, points.all(), points.f);
   EXPECT_TRUE(std::isnan(points.f(5, 40)));
   for (std::size_t point = 0; point < 13; ++point) {
     if (point == 5) continue;
@@ -76,10 +77,36 @@ TEST(HeatPoints, ARateThatIsNotANumberStaysWithItsPoint) {
   }
 }
 
+/// What is kept of a group's states must not pass for that of states the group was not asked about.
+TEST(HeatPoints, AnswerForTheWantedPointsAndLaterForTheOthers) {
+  const auto model = HeatCase().model(alone());
+  Points points(*model, 19);
+  const auto rates = model->at_points(points.parameters);
+  rates->rates(points.u, 1e-4, points.all(), points.f);
+  for (std::size_t i = 0; i < points.u.size(); ++i) points.u.data()[i] += 10.0;
+  const MatrixView expected("expected", points.f.extent(0), points.f.extent(1));
+  model->at_points(points.parameters)->rates(points.u, 1e-4, points.all(), expected);
+  const auto expect_rates = [&](std::size_t first, std::size_t last) {
+    for (std::size_t point = first; point < last; ++point) {
+      for (std::size_t i = 0; i < expected.extent(1); ++i) EXPECT_EQ(points.f(point, i), expected(point, i)) << point;
+    }
+  };
+  PointMask wanted(19, 0);
+  wanted[11] = 1;
+  Kokkos::deep_copy(points.f, -1.0);
+  rates->rates(points.u, 1e-4, wanted, points.f);
+  expect_rates(11, 12);
+  EXPECT_EQ(points.f(0, 0), -1.0);
+  EXPECT_EQ(points.f(18, 0), -1.0);
+  rates->rates(points.u, 1e-4, points.all(), points.f);
+  expect_rates(0, 19);
+}
+
 TEST(HeatPoints, RefuseOtherNumbersOfPointsAndUnknownParameters) {
   const auto model = HeatCase().model();
   const Points points(*model, 3), others(*model, 4);
-  EXPECT_THROW(model->at_points(points.parameters)->rates(others.u, 0.0, others.f), std::invalid_argument);
+  EXPECT_THROW(model->at_points(points.parameters)->rates(others.u, 0.0, others.all(), others.f),
+               std::invalid_argument);
   EXPECT_THROW(model->at_points({{"heat_source.powr"}, {{1.0}}}), InputError);
 }
 

@@ -22,8 +22,8 @@ VectorView column_of(const MatrixView& a, std::size_t k) { return Kokkos::subvie
 
 /// With every remainder of the vectors' width, in a block of a larger matrix, and beyond what goes without BLAS.
 TEST(Dense, ShortProductsArePlainSums) {
-  for (const std::size_t rows : {0, 1, 7, 8, 9, 31, 32, 41, 100, 5000}) {
-    for (const std::size_t columns : {0, 1, 12}) {
+  for (const std::size_t rows : {0, 1, 7, 8, 9, 14, 24, 28, 31, 32, 41, 100, 5000}) {
+    for (const std::size_t columns : {0, 1, 10, 12}) {
       const MatrixView whole = random_matrix(rows + 3, columns + 2, 3);
       const ConstMatrixView a =
           Kokkos::subview(whole, std::make_pair(std::size_t(2), rows + 2), std::make_pair(std::size_t(1), columns + 1));
