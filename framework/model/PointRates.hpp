@@ -13,7 +13,7 @@ namespace kiln {
 using PointMask = std::vector<char>;
 
 /// Whether a call is for any of the points first … first + count − 1.
-inline bool any_of(const PointMask& mask, std::size_t first, std::size_t count) {
+inline bool any_wanted(const PointMask& mask, std::size_t first, std::size_t count) {
   const auto begin = mask.begin() + static_cast<std::ptrdiff_t>(first);
   return std::any_of(begin, begin + static_cast<std::ptrdiff_t>(count), [](char wanted) { return wanted != 0; });
 }

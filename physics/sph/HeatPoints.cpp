@@ -47,7 +47,7 @@ class HeatModel::AtPoints final : public PointRates {
     model_.check("rates", u.extent(1), f.extent(1));
     if (!(time == absorbed_time_)) update_absorbed(time);
     for (std::size_t group = 0; group < groups_; ++group) {
-      if (!any_of(wanted, group * lane_count, width(group))) continue;
+      if (!any_wanted(wanted, group * lane_count, width(group))) continue;
       // As LastState has it: the first residual of a step is asked for where the step before ended.
       if (!summed_[group] || !are_of(group, u)) {
         summed_[group] = false;

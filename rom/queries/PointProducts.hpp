@@ -29,7 +29,7 @@ void over_points(std::size_t points, const PointMask& wanted, const Body& body) 
   std::size_t point = 0;
 #ifdef KILN_LANES
   for (; point + lane_count <= points; point += lane_count) {
-    if (any_of(wanted, point, lane_count)) body(point, EightPoints());
+    if (any_wanted(wanted, point, lane_count)) body(point, EightPoints());
   }
 #endif
   for (; point < points; ++point) {
