@@ -128,6 +128,11 @@ class QueriesTest(KilnTest):
                 self.assertEqual(outcome.status, 2, outcome.stderr)
                 for word in words:
                     self.assertIn(word, outcome.stderr)
+        # Before the model is built, which knows the units.
+        outcome = self.kiln("check", "points.yaml", "--set", "queries.points={heat_source.power: [1 W, 3 4, 1 Wx]}")
+        self.assertEqual(outcome.status, 2)
+        for word in ("queries.points.heat_source.power: '3 4' is not a number", "'Wx'", "a number, with a unit or without"):
+            self.assertIn(word, outcome.stderr)
         outcome = self.kiln("run", "points.yaml", "--restart")
         self.assertEqual(outcome.status, 2)
         self.assertIn("without --restart", outcome.stderr)

@@ -91,6 +91,26 @@ ParameterPoints rows(const Axes& axes) {
   return points;
 }
 
+/// The values listed under a name, one or several.
+std::vector<std::string> texts_of(const Teuchos::ParameterList& list, const std::string& name) {
+  if (!list.isType<Teuchos::Array<std::string>>(name)) return {list.get<std::string>(name)};
+  return list.get<Teuchos::Array<std::string>>(name).toVector();
+}
+
+/// What is no number with whatever unit: told before the model is built, which knows the units.
+void check_numbers(const Teuchos::ParameterList& points, std::vector<Problem>& problems) {
+  for (auto entry = points.begin(); entry != points.end(); ++entry) {
+    const std::string& name = points.name(entry);
+    for (const std::string& text : texts_of(points, name)) {
+      try {
+        parse_quantity(text);
+      } catch (const InputError& error) {
+        problems.push_back({"points." + name, error.problems().front().found, "a number, with a unit or without", {}});
+      }
+    }
+  }
+}
+
 Axes listed(const Teuchos::ParameterList& list, const Parameters& parameters, bool grid) {
   const std::string place = list.name();
   Axes axes;
@@ -103,12 +123,7 @@ Axes listed(const Teuchos::ParameterList& list, const Parameters& parameters, bo
       problems.push_back(unknown(path, name, parameters));
       continue;
     }
-    std::vector<std::string> texts;
-    if (list.isType<Teuchos::Array<std::string>>(name)) {
-      texts = list.get<Teuchos::Array<std::string>>(name).toVector();
-    } else {
-      texts.push_back(list.get<std::string>(name));
-    }
+    const std::vector<std::string> texts = texts_of(list, name);
     axes.names.push_back(name);
     std::vector<double>& values = axes.values.emplace_back();
     for (const std::string& text : texts) values.push_back(value_in(text, *parameter, path, problems));
@@ -195,6 +210,7 @@ Specification points_specification() {
   s.flag("grid", "all combinations of the values listed, the last parameter fastest; for `points`").defaults_to(false);
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     const bool points = list.isSublist("points"), file = list.isParameter("file");
+    if (points) check_numbers(list.sublist("points"), problems);
     if (points == file) {
       problems.push_back({"",
                           points ? "both points and file are given" : "neither points nor file is given",
