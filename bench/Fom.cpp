@@ -228,7 +228,7 @@ void count(const std::string& kernel, int repeats, const std::string& folder) {
   const BenchCase part = {{40, 30, 14}};
   const auto model = kernel == "lattice" ? part.lattice(communicator) : part.cloud(communicator, folder + "/count.csv");
   PlainRate plain(*model);
-  const auto rows = compressed_rows(model->domain());
+  const auto rows = sliced_rows(model->domain());
   const VectorView u = weld_state(*model);
   const VectorView f("f", model->rows()->getNodeNumElements());
   const ThermalStateView states("states", u.extent(0) + 1);

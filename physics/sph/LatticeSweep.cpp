@@ -120,7 +120,7 @@ class LatticeSweep final : public PairLayout {
       empty.insert(empty.end(), lane_count, nobody.volume);
     }
     lattice_.vectors = view_of<VectorView>(empty, "lattice states");
-    if (stencil.mirrored) own_images_ = compressed_rows(domain);
+    if (stencil.mirrored) own_images_ = sliced_rows(domain);
   }
 
   const char* name() const override { return "lattice sweep"; }

@@ -25,8 +25,9 @@ inline constexpr ThermalState<double> nobody = {0.0, 1.0, 0.0, 1.0};
 /// The fastest layout for these particles on this execution space.
 std::unique_ptr<PairLayout> pair_layout(const HeatDomain& domain);
 
-/// Each row's neighbours and weights one after the other: for any particles, any rows, and any execution space.
-std::unique_ptr<PairLayout> compressed_rows(const HeatDomain& domain);
+/// Some rows at a time, pair by pair, as many as a vector has lanes: for any particles, any rows, and any execution
+/// space. A row's sum does not depend on the rows beside it.
+std::unique_ptr<PairLayout> sliced_rows(const HeatDomain& domain);
 
 /// Each pair of two rows once, for both of them: half of the memory to read. For domains whose pairs are mutual, and
 /// where rows are summed one after the other only (one thread of a host).

@@ -62,45 +62,44 @@ KOKKOS_INLINE_FUNCTION Scalar pair_sum(const ThermalState<Scalar>* states, const
 }
 
 #ifdef KILN_LANES
-/// The same for a number of pairs that is a multiple of lane_count: sixteen at a time, one divide for each two.
-template <PairQuantity quantity>
-inline double pair_sum_by_lanes(const ThermalState<double>* states, const ThermalState<double>& i,
-                                const LocalIndex* sources, const double* weights, LocalIndex count) {
-  const Lanes u_i = all_lanes(i.temperature);
-  const Lanes resistivity_i = all_lanes(i.resistivity);
-  const auto term = [&](LocalIndex pair) {
-    const StateLanes j = state_lanes(states, sources + pair);
-    return pair_term<quantity>(u_i, resistivity_i, j.temperature, j.resistivity, j.volume)
-        .weighted(lanes_at(weights + pair));
-  };
-  Lanes sum = {};
-  LocalIndex pair = 0;
-  for (; pair + 2 * lane_count <= count; pair += 2 * lane_count) {
-    // The hardware's own prefetching stops at each 4 KiB page of these two streams: a third of the time.
-    __builtin_prefetch(weights + pair + 512);
-    __builtin_prefetch(weights + pair + 520);
-    __builtin_prefetch(sources + pair + 1024);
-    sum += (term(pair) + term(pair + lane_count)).value();
-  }
-  if (pair < count) sum += term(pair).value();
-  return lane_sum(sum);
-}
+/// Pairs that share one divide in the sums below.
+inline constexpr LocalIndex pairs_that_share = 4;
 
-/// Σ_j of PairQuantity::flux over a row's pairs in eight states at once, the lanes. Four pairs share one divide.
-inline Lanes pair_sum_of_points(const StateLanes* states, const StateLanes& i, const LocalIndex* sources,
-                                const double* weights, LocalIndex count) {
-  const auto term = [&](LocalIndex pair) {
-    const StateLanes& j = states[sources[pair]];
-    return pair_term<PairQuantity::flux>(i.temperature, i.resistivity, j.temperature, j.resistivity, j.volume)
-        .weighted(weights[pair]);
-  };
+/// Σ of term(0) … term(count − 1), in their order.
+template <class Term>
+inline Lanes sum_of_terms(LocalIndex count, const Term& term) {
   Lanes sum = {};
   LocalIndex pair = 0;
-  for (; pair + 4 <= count; pair += 4) {
+  for (; pair + pairs_that_share <= count; pair += pairs_that_share) {
     sum += ((term(pair) + term(pair + 1)) + (term(pair + 2) + term(pair + 3))).value();
   }
   for (; pair < count; ++pair) sum += term(pair).value();
   return sum;
+}
+
+/// pair_sum of eight rows i, a lane each. sources, weights: pair by pair, row by row. Where `count` is a multiple of
+/// pairs_that_share, pairs of no weight behind a row's own ones do not change a bit of its sum.
+template <PairQuantity quantity>
+inline Lanes pair_sum_of_rows(const ThermalState<double>* states, const StateLanes& i, const LocalIndex* sources,
+                              const double* weights, LocalIndex count) {
+  return sum_of_terms(count, [&](LocalIndex pair) {
+    // The hardware's own prefetching stops at each 4 KiB page of these two streams: a third of the time.
+    __builtin_prefetch(weights + pair * lane_count + 512);
+    __builtin_prefetch(sources + pair * lane_count + 1024);
+    const StateLanes j = state_lanes(states, sources + pair * lane_count);
+    return pair_term<quantity>(i.temperature, i.resistivity, j.temperature, j.resistivity, j.volume)
+        .weighted(lanes_at(weights + pair * lane_count));
+  });
+}
+
+/// pair_sum of PairQuantity::flux of a row in eight states at once, the lanes.
+inline Lanes pair_sum_of_points(const StateLanes* states, const StateLanes& i, const LocalIndex* sources,
+                                const double* weights, LocalIndex count) {
+  return sum_of_terms(count, [&](LocalIndex pair) {
+    const StateLanes& j = states[sources[pair]];
+    return pair_term<PairQuantity::flux>(i.temperature, i.resistivity, j.temperature, j.resistivity, j.volume)
+        .weighted(weights[pair]);
+  });
 }
 #endif
 
