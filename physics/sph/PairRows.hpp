@@ -19,9 +19,9 @@ struct PairRows {
   }
   KOKKOS_FORCEINLINE_FUNCTION const double* weights_of(LocalIndex row) const { return weights.data() + offsets(row); }
 
-  Borrowed<ConstOffsetView> offsets;
-  Borrowed<ConstIndexView> neighbours;
-  Borrowed<ConstVectorView> weights;
+  decltype(borrowed(ConstOffsetView())) offsets;
+  decltype(borrowed(ConstIndexView())) neighbours;
+  decltype(borrowed(ConstVectorView())) weights;
 };
 
 }  // namespace kiln

@@ -79,9 +79,8 @@ class Cutting {
     const double apart = clustering_tie * (*high - *low);
     std::vector<std::size_t> order(places.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&places](std::size_t a, std::size_t b) {
-      return places[a] < places[b] || (places[a] == places[b] && a < b);
-    });
+    std::sort(order.begin(), order.end(),
+              [&places](std::size_t a, std::size_t b) { return std::pair(places[a], a) < std::pair(places[b], b); });
     double total = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
       total += weights_[part.members[i]];

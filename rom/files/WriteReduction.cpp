@@ -2,6 +2,8 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Seal.hpp"
@@ -74,7 +76,7 @@ void write_contents(const std::string& file, const Reduction& reduction) {
   hdf5::Group windows = root.create_group("windows");
   std::vector<GlobalIndex> told = reduction.queries;
   told.insert(told.end(), reduction.extremes.begin(), reduction.extremes.end());
-  std::vector<GlobalIndex> held = told, targets = told;
+  std::set<GlobalIndex> held(told.begin(), told.end()), targets = held;
   bool clustered = false;
   std::vector<MatrixView> modes;
   for (std::size_t w = 0; w < reduction.windows.size(); ++w) {
@@ -86,20 +88,19 @@ void write_contents(const std::string& file, const Reduction& reduction) {
     write_sample_mesh(group.create_group("sample_mesh"), window, sources);
     if (window.clustered) window.clustered->write(group.create_group("clusters"));
     modes.push_back(window.basis.modes);
-    held.insert(held.end(), sources.begin(), sources.end());
-    targets.insert(targets.end(), window.sampled.begin(), window.sampled.end());
+    held.insert(sources.begin(), sources.end());
+    targets.insert(window.sampled.begin(), window.sampled.end());
     clustered = clustered || window.clustered;
   }
-  const auto table_of = [&](std::vector<GlobalIndex> ids) {
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-    return ParticleTable::gather(ids, rows, reduction.model.positions(), reduction.reference, modes, components);
+  const auto table_of = [&](const std::set<GlobalIndex>& ids) {
+    return ParticleTable::gather({ids.begin(), ids.end()}, rows, reduction.model.positions(), reduction.reference,
+                                 modes, components);
   };
   hdf5::Group particles = root.create_group("particles");
-  table_of(std::move(held)).write(particles);
+  table_of(held).write(particles);
   if (clustered) {
     hdf5::Group group = root.create_group("targets");
-    table_of(std::move(targets)).write(group);
+    table_of(targets).write(group);
   }
   particles.write("queries", std::vector<long long>(reduction.queries.begin(), reduction.queries.end()));
   root.flush();
