@@ -23,6 +23,27 @@ inline void store_lanes(double* numbers, const Lanes& lanes) { __builtin_memcpy(
 
 inline Lanes all_lanes(double x) { return Lanes{x, x, x, x, x, x, x, x}; }
 
+/// The largest whole numbers not above x, of 0 ≤ x < 2^51.
+inline Lanes whole_part(const Lanes& x) {
+  // Adding 2^52 leaves no room for a fraction: the nearest whole number.
+  constexpr double rounder = 4503599627370496.0;
+  const Lanes nearest = (x + rounder) - rounder;
+  return nearest > x ? nearest - 1.0 : nearest;
+}
+
+using LaneBits = long long __attribute__((vector_size(lane_count * sizeof(long long))));
+
+/// values[which[lane]] of each lane, from eight values.
+inline Lanes picked(const double* values, const LaneBits& which) {
+#ifdef __clang__
+  Lanes lanes;
+  for (int lane = 0; lane < lane_count; ++lane) lanes[lane] = values[which[lane]];
+  return lanes;
+#else
+  return __builtin_shuffle(lanes_at(values), which);
+#endif
+}
+
 /// The first and the second of each three numbers, of eight triples one after the other.
 struct FirstTwoLanes {
   Lanes first;
@@ -37,7 +58,6 @@ inline FirstTwoLanes first_two_of_triples(const double* triples) {
 }
 
 /// Whether any of eight numbers differs from its counterpart in a bit.
-using LaneBits = long long __attribute__((vector_size(lane_count * sizeof(long long))));
 inline LaneBits differing_bits(const Lanes& a, const Lanes& b) {
   return reinterpret_cast<const LaneBits&>(a) ^ reinterpret_cast<const LaneBits&>(b);
 }

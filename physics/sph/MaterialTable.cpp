@@ -62,6 +62,14 @@ MaterialTable::MaterialTable(double from, double step, const std::vector<double>
   Kokkos::deep_copy(rows, host);
   held_ = rows;
   rows_ = held_.data();
+  const std::optional<MaterialPieces> pieces = MaterialPieces::of(values);
+  if (!pieces) return;
+  const Kokkos::View<MaterialPieces*, Device> held_pieces("pieces of a material table", 1);
+  const auto host_pieces = Kokkos::create_mirror_view(held_pieces);
+  host_pieces(0) = *pieces;
+  Kokkos::deep_copy(held_pieces, host_pieces);
+  held_pieces_ = held_pieces;
+  pieces_ = held_pieces_.data();
 }
 
 std::vector<double> MaterialTable::values() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
+#include "physics/sph/MaterialPieces.hpp"
 
 namespace kiln {
 
@@ -44,23 +45,38 @@ class MaterialLookup {
   KOKKOS_INLINE_FUNCTION MaterialPoint<Scalar> at(const Scalar& u) const {
     const double value = value_of(u);
     double fraction;
-    const MaterialRow& row = rows_[interval(value, fraction)];
+    const int i = interval(value, fraction);
     if constexpr (std::is_same_v<Scalar, double>) {
-      return interpolated(row, fraction);
+      return interpolated(i, fraction);
     } else {
-      return interpolated(row, Scalar(fraction + (u - value) * (value < from_ ? 0.0 : inverse_step_)));
+      return interpolated(i, Scalar(fraction + (u - value) * (value < from_ ? 0.0 : inverse_step_)));
     }
   }
 
   /// The row at or below u, and how far u lies from it to the next one, less than 1; 0 outside the table. Without a
   /// branch, for vectors.
   KOKKOS_FORCEINLINE_FUNCTION int interval(double u, double& fraction) const {
-    double place = (u - from_) * inverse_step_;
-    place = place < intervals_ ? place : intervals_;
-    place = place > 0.0 ? place : 0.0;
+    const double place = place_of(u, static_cast<double>(intervals_));
     const int i = static_cast<int>(place);
     fraction = place - i;
     return i;
+  }
+  /// How many rows, and what part of one, u lies above the first: for vectors of temperatures as for one.
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION Number place_of(const Number& u, const Number& last) const {
+    const Number place = (u - from_) * inverse_step_;
+    const Number below = place < last ? place : last;
+    return below > 0.0 ? below : last - last;
+  }
+  /// The place of the table's last row.
+  KOKKOS_FORCEINLINE_FUNCTION double last_place() const { return intervals_; }
+  /// In their place, where the rows are those of few polynomials; else nullptr.
+  KOKKOS_FORCEINLINE_FUNCTION const MaterialPieces* pieces() const { return pieces_; }
+  /// A property of a piece, x rows from its first one; see MaterialPieces.
+  template <class Number>
+  KOKKOS_FORCEINLINE_FUNCTION static Number of_piece(const Number& value, const Number& first, const Number& second,
+                                                     const Number& x, const Number& fraction) {
+    return value + (x * (first + x * second) + (fraction - fraction * fraction) * second);
   }
   /// One row for each tabulated temperature, in a kernel.
   KOKKOS_FORCEINLINE_FUNCTION const MaterialRow* rows() const { return rows_; }
@@ -69,7 +85,16 @@ class MaterialLookup {
   KOKKOS_INLINE_FUNCTION MaterialPoint<double> slopes(double u) const {
     const double place = (u - from_) * inverse_step_;
     if (!(place >= 0.0 && place < intervals_)) return {0.0, 0.0, 0.0};
-    const MaterialRow& row = rows_[static_cast<LocalIndex>(place)];
+    const auto i = static_cast<LocalIndex>(place);
+    if (pieces_ != nullptr) {
+      const int piece = pieces_->piece_at(i);
+      const double sides = 2.0 * (i - pieces_->starts[piece]) + 1.0;
+      const auto slope = [&](int k) {
+        return (pieces_->firsts[k][piece] + sides * pieces_->seconds[k][piece]) * inverse_step_;
+      };
+      return {slope(0), slope(1), slope(2)};
+    }
+    const MaterialRow& row = rows_[i];
     return {row.differences[0] * inverse_step_, row.differences[1] * inverse_step_, row.differences[2] * inverse_step_};
   }
 
@@ -82,11 +107,21 @@ class MaterialLookup {
   double inverse_step_;
   LocalIndex intervals_;
   const MaterialRow* rows_ = nullptr;  ///< intervals_ + 1 of them, on the device
+  const MaterialPieces* pieces_ = nullptr;
 
  private:
   template <class Scalar>
-  KOKKOS_FORCEINLINE_FUNCTION static MaterialPoint<Scalar> interpolated(const MaterialRow& row,
-                                                                        const Scalar& fraction) {
+  KOKKOS_FORCEINLINE_FUNCTION MaterialPoint<Scalar> interpolated(int i, const Scalar& fraction) const {
+    if (pieces_ != nullptr) {
+      const int piece = pieces_->piece_at(i);
+      const Scalar x = (i - pieces_->starts[piece]) + fraction;
+      const auto property = [&](int k) {
+        return of_piece(Scalar(pieces_->values[k][piece]), Scalar(pieces_->firsts[k][piece]),
+                        Scalar(pieces_->seconds[k][piece]), x, fraction);
+      };
+      return {property(0), property(1), property(2)};
+    }
+    const MaterialRow& row = rows_[i];
     return {row.values[0] + fraction * row.differences[0], row.values[1] + fraction * row.differences[1],
             row.values[2] + fraction * row.differences[2]};
   }
@@ -108,6 +143,7 @@ class MaterialTable : public MaterialLookup {
 
  private:
   Kokkos::View<const MaterialRow*, Device> held_;
+  Kokkos::View<const MaterialPieces*, Device> held_pieces_;  ///< one or none
 };
 
 }  // namespace kiln

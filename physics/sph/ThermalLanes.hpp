@@ -5,8 +5,24 @@
 #ifdef KILN_LANES
 namespace kiln {
 
+/// MaterialLookup::at for eight temperatures, where the table has pieces.
+inline MaterialPoint<Lanes> properties_at(const MaterialLookup& table, const MaterialPieces& pieces, const Lanes& u) {
+  const Lanes place = table.place_of(u, all_lanes(table.last_place()));
+  const Lanes fraction = place - whole_part(place);
+  LaneBits piece = {};
+  // A comparison's lanes are 0 and −1.
+  for (int k = 1; k < MaterialPieces::most; ++k) piece -= place >= pieces.starts[k];
+  const Lanes x = place - picked(pieces.starts, piece);
+  const auto property = [&](int k) {
+    return MaterialLookup::of_piece(picked(pieces.values[k], piece), picked(pieces.firsts[k], piece),
+                                    picked(pieces.seconds[k], piece), x, fraction);
+  };
+  return {property(0), property(1), property(2)};
+}
+
 /// MaterialLookup::at for eight temperatures.
 inline MaterialPoint<Lanes> properties_at(const MaterialLookup& table, const Lanes& u) {
+  if (table.pieces() != nullptr) return properties_at(table, *table.pieces(), u);
   double fraction[lane_count];
   int interval[lane_count];
 #pragma omp simd

@@ -60,6 +60,35 @@ TEST(MaterialTable, SlopesAreDerivatives) {
   EXPECT_LT(table.slopes(1660.4).density, -100.0);
 }
 
+TEST(MaterialTable, OfFormulasIsFewPieces) {
+  const MaterialTable table = steel();
+  ASSERT_NE(table.pieces(), nullptr);
+  // Solid, the jump at 1660.5 K, liquid, the jump at 3090 K, vapour, the end.
+  EXPECT_EQ(table.pieces()->starts[1], 1460.0);
+  EXPECT_TRUE(std::isfinite(table.pieces()->starts[5]));
+  EXPECT_TRUE(std::isinf(table.pieces()->starts[6]));
+  // Between its rows the straight line, not the curve that they lie on: a row apart, they differ by 1e-5 kg/m^3.
+  const std::vector<double> rows = table.values();
+  for (double u = 200.3; u < 6000.0; u += 0.7) {
+    const auto i = static_cast<std::size_t>(u - 200.0);
+    const double f = u - 200.0 - static_cast<double>(i);
+    const MaterialPoint<double> point = table.at(u);
+    const double found[] = {point.conductivity, point.specific_heat, point.density};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double expected = (1.0 - f) * rows[3 * i + k] + f * rows[3 * i + 3 + k];
+      ASSERT_NEAR(found[k], expected, 1e-14 * expected) << u << " K";
+    }
+  }
+}
+
+TEST(MaterialTable, OfAnyOtherLawKeepsItsRows) {
+  const auto cubic = material(formula("10 + 1e-8*u*u*u"));
+  const MaterialTable table(*cubic, 200.0, 1200.0, 1.0, "model.material");
+  EXPECT_EQ(table.pieces(), nullptr);
+  const std::vector<double> rows = table.values();
+  EXPECT_DOUBLE_EQ(table.at(700.25).conductivity, 0.75 * rows[3 * 500] + 0.25 * rows[3 * 501]);
+}
+
 TEST(MaterialTable, SurvivesItsValues) {
   const MaterialTable table = steel();
   const MaterialTable copy(table.from(), table.step(), table.values());
