@@ -79,10 +79,12 @@ class Queries {
   std::vector<double> together(const ParameterPoints& points, std::size_t width) {
     const std::size_t row = places_.size(), history = (span_.last_step + 1) * row;
     std::vector<double> values(points.count() * history);
+    std::unique_ptr<PointBlock> block;
     for (std::size_t first = 0; first < points.count(); first += width) {
       const std::size_t count = std::min(width, points.count() - first);
-      const auto block = dynamic_cast<AdvancesTogether&>(*method_).point_block(
-          {points.part(first, count), *scheme_, span_.step, places_});
+      if (first == 0 || count != width) {
+        block = dynamic_cast<AdvancesTogether&>(*method_).point_block({count, *scheme_, span_.step, places_});
+      }
       const MatrixView told("probes", count, row);
       const auto keep = [&](int step) {
         block->tell(told);
@@ -90,7 +92,7 @@ class Queries {
           for (std::size_t k = 0; k < row; ++k) values[(first + point) * history + step * row + k] = told(point, k);
         }
       };
-      block->start();
+      block->start(points.part(first, count));
       keep(0);
       for (int step = 1; step <= span_.last_step; ++step) {
         block->advance(step, step * span_.step);

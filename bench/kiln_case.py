@@ -1,4 +1,4 @@
-"""An input that sections of ./dev bench train, run in full order and run reduced, on two ranks."""
+"""An input that sections of ./dev bench train, run in full order and run reduced, on two ranks if they don't say else."""
 import json
 import shutil
 import statistics
@@ -34,10 +34,10 @@ class KilnCase:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
 
-    def kiln(self, command, name, *changes):
+    def kiln(self, command, name, *changes, ranks=2):
         """The run folder that `kiln COMMAND` leaves below `name`."""
         words = [word for change in [*self.changes, *changes] for word in ("--set", change)]
-        self.bench.run(["mpirun", "-n", "2", str(self.bench.kiln), command, str(self.file), "--quiet",
+        self.bench.run(["mpirun", "-n", str(ranks), str(self.bench.kiln), command, str(self.file), "--quiet",
                         "--set", f"output.directory={self.folder / name}", *words])
         if not self.bench.machine:
             report = next((self.folder / name).glob("*/report.json"))
@@ -50,15 +50,15 @@ class KilnCase:
         report = json.loads((folder / "training/report.json").read_text())
         return folder / "reduction.h5", report["time"]["total_wall_s"]
 
-    def full_order(self, name="full-order", *changes):
-        return RunFolder(self.kiln("run", name, "method.type=fom", *changes) / "fom")
+    def full_order(self, name="full-order", *changes, ranks=2):
+        return RunFolder(self.kiln("run", name, "method.type=fom", *changes, ranks=ranks) / "fom")
 
-    def online(self, reduction, method="gnat", *changes):
+    def online(self, reduction, method="gnat", *changes, ranks=2):
         """The last of several runs, and the middle one's wall and CPU time in s."""
-        return self.online_in_turn([(self, reduction)], method, *changes)[0]
+        return self.online_in_turn([(self, reduction)], method, *changes, ranks=ranks)[0]
 
     @staticmethod
-    def online_in_turn(cases, method, *changes):
+    def online_in_turn(cases, method, *changes, ranks=2):
         """Of each pair of case and reduction file what online() tells. They run in turn, so that a machine that is slower
         for a while is so for all."""
         times = [[] for _ in cases]
@@ -66,7 +66,7 @@ class KilnCase:
         for _ in range(ONLINE_RUNS):
             for number, (case, reduction) in enumerate(cases):
                 words = (f"method.type={method}", f"method.file={reduction}", *changes)
-                runs[number] = run = RunFolder(case.kiln("run", f"online-{number}", *words) / method)
+                runs[number] = run = RunFolder(case.kiln("run", f"online-{number}", *words, ranks=ranks) / method)
                 times[number].append((run.report["time"]["loop_wall_s"], run.report["time"]["loop_cpu_s"]))
         return [(run, statistics.median(wall for wall, _ in each), statistics.median(cpu for _, cpu in each))
                 for run, each in zip(runs, times)]

@@ -261,7 +261,8 @@ class StopTest(FaultTest):
     def test_without_checkpoints(self):
         text = SMALL.read_text().replace("  checkpoint: {every: 5}\n", "")
         (self.folder / "bare.yaml").write_text(text)
-        words = command("run", "bare.yaml", *overrides(*CASE[:2]), "--quiet")
+        # Nothing tells how far it is: it must take much longer than the signal.
+        words = command("run", "bare.yaml", *overrides(*case(40 * STEPS)[:2]), "--quiet")
         process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", start_new_session=True)
         probes = self.folder / "results" / "fom" / "probes.csv"
         while not probes.exists():

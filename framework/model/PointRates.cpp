@@ -22,6 +22,8 @@ class OneAfterTheOther final : public PointRates {
     if (points_.count() > 0) points_.set(0, model_.parameters());
   }
 
+  void take(const ParameterPoints& points) override { points_ = points; }
+
   void rates(ConstMatrixView u, double time, const PointMask& wanted, MatrixView f) override {
     for (std::size_t point = 0; point < points_.count(); ++point) {
       if (wanted[point] == 0) continue;

@@ -28,6 +28,8 @@ class PointRates {
   /// points not wanted overwritten or not; both with the points' values next to each other. A point's values depend on
   /// no other point's. The model's live parameters are left at any of the points' values.
   virtual void rates(ConstMatrixView u, double time, const PointMask& wanted, MatrixView f) = 0;
+  /// Goes over to other points, of the same number.
+  virtual void take(const ParameterPoints& points) = 0;
 };
 
 /// The points one after the other: right for every model. The model must outlive the result. Throws as Parameters::set

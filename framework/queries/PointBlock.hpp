@@ -25,8 +25,9 @@ struct PointOutcome {
 class PointBlock {
  public:
   virtual ~PointBlock() = default;
-  /// Takes every point's initial state, at t = 0.
-  virtual void start() = 0;
+  /// Begins at t = 0, at points of the number the block was made for. What it has made for other points before, it
+  /// uses again.
+  virtual void start(const ParameterPoints& points) = 0;
   /// Advances all points to `time`, the end of step `step`. A point that diverges is marked in its outcome and left
   /// behind; the others go on.
   virtual void advance(int step, double time) = 0;
@@ -39,7 +40,7 @@ class PointBlock {
 class AdvancesTogether {
  public:
   struct Request {
-    ParameterPoints points;
+    std::size_t points;              ///< how many
     const TimeScheme& scheme;        ///< of this method; how a step is taken
     double step;                     ///< Δt in s
     std::vector<LocalIndex> places;  ///< among the method's particles(): whose states are to be told

@@ -100,42 +100,42 @@ QueryRun::QueryRun(const Teuchos::ParameterList& input, Teuchos::RCP<const Commu
 
   const std::size_t count = answers_.points.count(), wanted = queries.get<int>("together");
   if (dynamic_cast<AdvancesTogether*>(method_.get()) != nullptr) together_ = std::min(wanted, count);
-  if (together_ > 1) block(0, 1);
+  if (together_ > 1) make_block(1);
   const std::size_t blocks = (count + together_ - 1) / together_;
   const std::size_t rank = communicator_->getRank(), ranks = communicator_->getSize();
   answers_.first = std::min(count, blocks * rank / ranks * together_);
   answers_.outcomes.resize(std::min(count, blocks * (rank + 1) / ranks * together_) - answers_.first);
 }
 
-std::unique_ptr<PointBlock> QueryRun::block(std::size_t first, std::size_t count) {
-  return dynamic_cast<AdvancesTogether&>(*method_).point_block(
-      {answers_.points.part(first, count), *scheme_, span_.step, places_});
+void QueryRun::make_block(std::size_t points) {
+  block_ = dynamic_cast<AdvancesTogether&>(*method_).point_block({points, *scheme_, span_.step, places_});
+  block_size_ = points;
 }
 
 void QueryRun::answer_together(std::size_t first, std::size_t count) {
   const bool is_last = first + count == answers_.outcomes.size();
-  const std::unique_ptr<PointBlock> points = block(answers_.first + first, count);
+  if (block_size_ != count) make_block(count);
   const MatrixView told("kiln::queries::probes", count, answers_.width());
   std::size_t recorded = 0;
   const auto record = [&](int step) {
     if (!is_recorded(step)) return;
-    points->tell(told);
+    block_->tell(told);
     for (std::size_t point = 0; point < count; ++point) {
-      if (!points->outcomes()[point].divergence.empty()) continue;
+      if (!block_->outcomes()[point].divergence.empty()) continue;
       double* row = answers_.row(first + point, recorded);
       for (std::size_t column = 0; column < answers_.width(); ++column) row[column] = told(point, column);
     }
     ++recorded;
   };
   StopRequest stop(*own_, 0);
-  points->start();
+  block_->start(answers_.points.part(answers_.first + first, count));
   record(0);
   for (int step = 1; step <= span_.last_step; ++step) {
-    points->advance(step, step * span_.step);
+    block_->advance(step, step * span_.step);
     record(step);
     if (stop.came(step) && !(is_last && step == span_.last_step)) throw Stopped(StopRequest::name());
   }
-  std::copy(points->outcomes().begin(), points->outcomes().end(),
+  std::copy(block_->outcomes().begin(), block_->outcomes().end(),
             answers_.outcomes.begin() + static_cast<std::ptrdiff_t>(first));
 }
 

@@ -32,7 +32,7 @@ class QueryRun {
   std::size_t diverged() const;
 
  private:
-  std::unique_ptr<PointBlock> block(std::size_t first, std::size_t count);
+  void make_block(std::size_t points);
   void answer_together(std::size_t first, std::size_t count);
   void answer_alone(std::size_t point);
   bool is_recorded(int step) const { return step % every_ == 0 || step == span_.last_step; }
@@ -46,6 +46,8 @@ class QueryRun {
   Method::Reader reader_;           ///< of points one after the other
   std::vector<LocalIndex> places_;  ///< of the probes
   std::size_t together_ = 1;
+  std::unique_ptr<PointBlock> block_;  ///< of points that advance together; serves one block of points after the other
+  std::size_t block_size_ = 0;
   QueryAnswers answers_;
 };
 

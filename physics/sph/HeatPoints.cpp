@@ -33,11 +33,23 @@ class HeatModel::AtPoints final : public PointRates {
         states_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "thermal states of points"),
                 groups_ * static_cast<std::size_t>(model.source_count())),
         specific_heats_("specific heats of points", groups_ * static_cast<std::size_t>(model.row_count())),
-        fluxes_("heat flux of points", model.heated_.extent(0), points.count()),
+        held_fluxes_("heat flux of points", points.count(), model.heated_.extent(0)),
+        fluxes_(uncounted(held_fluxes_)),
+        positions_(model.heated_positions_.data(), model.heated_.extent(0)),
         absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())),
         pair_fluxes_("pair sums of points", groups_ * static_cast<std::size_t>(model.row_count())),
         summed_(groups_, false) {
-    if (points_.count() > 0) points_.set(0, model_.parameters_);
+    take(points);
+  }
+
+  void take(const ParameterPoints& points) override {
+    points_ = points;
+    absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
+    summed_.assign(groups_, false);
+    if (points_.count() == 0) return;
+    points_.set(0, model_.parameters_);
+    source_ = model_.heat_source_->at_points(points_.count(),
+                                             [this](std::size_t point) { points_.set(point, model_.parameters_); });
   }
 
   void rates(ConstMatrixView u, double time, const PointMask& wanted, MatrixView f) override {
@@ -45,11 +57,11 @@ class HeatModel::AtPoints final : public PointRates {
       throw std::invalid_argument("HeatModel: arrays of another number of points, or with gaps");
     }
     model_.check("rates", u.extent(1), f.extent(1));
-    if (!(time == absorbed_time_)) update_absorbed(time);
+    if (!(time == absorbed_time_) && points_.count() > 0) update_absorbed(time);
     for (std::size_t group = 0; group < groups_; ++group) {
       if (!any_wanted(wanted, group * lane_count, width(group))) continue;
       // As LastState has it: the first residual of a step is asked for where the step before ended.
-      if (!summed_[group] || !are_of(group, u)) {
+      if (!summed_[group] || !are_of(group, borrowed(u))) {
         summed_[group] = false;
         update_states(group, u);
         sum_pairs(group);
@@ -69,10 +81,7 @@ class HeatModel::AtPoints final : public PointRates {
     const auto heated = borrowed(model_.heated_);
     const auto number = static_cast<LocalIndex>(heated.extent(0));
     absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t point = 0; point < points_.count(); ++point) {
-      points_.set(point, model_.parameters_);
-      model_.heat_source_->flux(time, model_.heated_positions_, Kokkos::subview(fluxes_, Kokkos::ALL, point));
-    }
+    source_->flux(time, positions_, fluxes_);
     const auto absorbed = borrowed(absorbed_);
     const auto fluxes = borrowed(fluxes_);
     const auto areas = borrowed(model_.domain_.areas);
@@ -80,15 +89,20 @@ class HeatModel::AtPoints final : public PointRates {
     loop(
         absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) {
           const LocalIndex row = heated(h);
-          for (std::size_t point = 0; point < points; ++point) {
-            absorbed(point / lane_count * rows + row, point % lane_count) = fluxes(h, point) * areas(row);
+          std::size_t group = 0;
+          for (; (group + 1) * lane_count <= points; ++group) {
+            store_lanes(&absorbed(group * rows + row, 0), lanes_at(&fluxes(group * lane_count, h)) * areas(row));
+          }
+          for (std::size_t lane = 0; lane < points - group * lane_count; ++lane) {
+            absorbed(group * rows + row, lane) = fluxes(group * lane_count + lane, h) * areas(row);
           }
         });
     absorbed_time_ = time;
   }
 
   /// Zero where the group has no point.
-  static Lanes temperatures(const ConstMatrixView& u, std::size_t first_point, std::size_t points, LocalIndex source) {
+  static Lanes temperatures(const Borrowed<ConstMatrixView>& u, std::size_t first_point, std::size_t points,
+                            LocalIndex source) {
     if (points == lane_count) return lanes_at(&u(first_point, source));
     Lanes temperature = {};
     for (std::size_t lane = 0; lane < points; ++lane) temperature[lane] = u(first_point + lane, source);
@@ -96,7 +110,7 @@ class HeatModel::AtPoints final : public PointRates {
   }
 
   /// Whether a group's states are those of these temperatures.
-  bool are_of(std::size_t group, const ConstMatrixView& u) const {
+  bool are_of(std::size_t group, const Borrowed<ConstMatrixView>& u) const {
     const std::size_t first = group * static_cast<std::size_t>(model_.source_count());
     LaneBits differing = {};
     for (LocalIndex j = 0; j < model_.source_count(); ++j) {
@@ -112,10 +126,11 @@ class HeatModel::AtPoints final : public PointRates {
     const MaterialLookup table = model_.table_;
     const std::size_t first_point = group * lane_count, points = width(group);
     const std::size_t rows = model_.row_count(), first = group * static_cast<std::size_t>(model_.source_count());
+    const auto temperature = borrowed(u);
     loop(
         states_label, model_.source_count(), KOKKOS_LAMBDA(LocalIndex j) {
           const ThermalLanes state =
-              thermal_lanes(table, temperatures(u, first_point, points, j), all_lanes(masses(j)));
+              thermal_lanes(table, temperatures(temperature, first_point, points, j), all_lanes(masses(j)));
           states(first + j) = {state.temperature, state.resistivity, state.volume};
           if (static_cast<std::size_t>(j) < rows) {
             store_lanes(&specific_heats(group * rows + j, 0), state.specific_heat);
@@ -136,7 +151,8 @@ class HeatModel::AtPoints final : public PointRates {
         });
   }
 
-  void form_rates(std::size_t group, const MatrixView& f) {
+  void form_rates(std::size_t group, const MatrixView& of_rows) {
+    const auto f = borrowed(of_rows);
     const auto states = borrowed(states_);
     const auto specific_heats = borrowed(specific_heats_);
     const auto absorbed = borrowed(absorbed_);
@@ -164,10 +180,13 @@ class HeatModel::AtPoints final : public PointRates {
   std::size_t groups_;                        ///< of eight points each, the last one perhaps of fewer
   Kokkos::View<StateLanes*, Device> states_;  ///< group by group: of the sources
   LaneView specific_heats_;                   ///< group by group: of the rows
-  MatrixView fluxes_;                         ///< at the heated rows, of each point
-  LaneView absorbed_;                         ///< as specific_heats_, at absorbed_time_
-  LaneView pair_fluxes_;                      ///< as specific_heats_, of states_
-  std::vector<char> summed_;                  ///< of each group: whether its states and pair sums were made
+  std::unique_ptr<PointFluxes> source_;
+  MatrixView held_fluxes_;       ///< at the heated rows, of each point
+  MatrixView fluxes_;            ///< the same, handed on without an owner to count
+  ConstPositionView positions_;  ///< likewise
+  LaneView absorbed_;            ///< as specific_heats_, at absorbed_time_
+  LaneView pair_fluxes_;         ///< as specific_heats_, of states_
+  std::vector<char> summed_;     ///< of each group: whether its states and pair sums were made
   double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
 };
 

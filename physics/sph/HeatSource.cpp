@@ -1,102 +1,32 @@
 #include "physics/sph/HeatSource.hpp"
 
-#include <fmt/format.h>
+#include <string>
 
-#include <cmath>
-
-#include "framework/base/Exponential.hpp"
 #include "framework/base/Loop.hpp"
+#include "framework/model/PointRates.hpp"
 
 namespace kiln {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-// Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
-const std::string beam_label = "kiln::sph::gaussian beam";
-
-/// Eq. 9: P/(2πσ²) exp(−r²/(2σ²)) with r the distance from start + velocity · t in the x-y plane, which deposits P; or,
-/// as the report prints it, exp(−r²/(2πσ²)), which deposits πP.
-class GaussianBeam final : public HeatSource {
+class OneAfterTheOther final : public PointFluxes {
  public:
-  static Specification specification() {
-    Specification specification;
-    specification.real("power", "absorbed power").unit("W").at_least(0);
-    specification.real("width", "standard deviation of the beam").unit("m").above(0);
-    specification.reals("start", "x and y of the beam at t = 0").unit("m").length(2);
-    specification.reals("velocity", "velocity of the beam along x and y").unit("m/s").length(2);
-    specification
-        .choice("normalisation",
-                "standard: exponent -r^2/(2 width^2), deposits `power`; printed: -r^2/(2 pi width^2) as in Eq. 9, "
-                "deposits pi times as much",
-                {"standard", "printed"})
-        .defaults_to("standard");
-    return specification;
-  }
+  OneAfterTheOther(const HeatSource& source, std::size_t count, HeatSource::SetPoint set)
+      : source_(source), count_(count), set_(std::move(set)) {}
 
-  GaussianBeam(const Teuchos::ParameterList& list, const Context&)
-      : path_(list.name()),
-        power_(list.get<double>("power")),
-        width_(list.get<double>("width")),
-        printed_(list.isParameter("normalisation") && list.get<std::string>("normalisation") == "printed") {
-    const auto start = list.get<Teuchos::Array<double>>("start");
-    const auto velocity = list.get<Teuchos::Array<double>>("velocity");
-    for (int axis = 0; axis < 2; ++axis) {
-      start_[axis] = start[axis];
-      velocity_[axis] = velocity[axis];
+  void flux(double time, ConstPositionView positions, MatrixView q) override {
+    if (one_.extent(0) != positions.extent(0)) one_ = VectorView("heat flux of a point", positions.extent(0));
+    for (std::size_t point = 0; point < count_; ++point) {
+      set_(point);
+      source_.flux(time, positions, one_);
+      put_point(one_, point, q);
     }
-    parameters_.add("power", "W", &power_);
-    parameters_.add("width", "m", &width_);
-    parameters_.add("velocity.x", "m/s", &velocity_[0]);
-    parameters_.add("velocity.y", "m/s", &velocity_[1]);
-    parameters_.add("start.x", "m", &start_[0]);
-    parameters_.add("start.y", "m", &start_[1]);
-  }
-
-  void flux(double time, ConstPositionView positions, VectorView q) const override {
-    if (!(width_ > 0.0)) {
-      throw InputError(path_ + ".width", fmt::format("the beam's width is set to {}", width_), "a width in m above 0");
-    }
-    const double x = start_[0] + velocity_[0] * time;
-    const double y = start_[1] + velocity_[1] * time;
-    const double peak = power_ / (2.0 * pi * width_ * width_);
-    const double exponent = -1.0 / (2.0 * (printed_ ? pi : 1.0) * width_ * width_);
-    const auto places = borrowed(positions);
-    const auto flux = borrowed(q);
-    const auto number = static_cast<LocalIndex>(positions.extent(0));
-#ifdef KILN_LANES
-    const auto at = [=](const double* eight) {
-      const FirstTwoLanes place = first_two_of_triples(eight);
-      const Lanes dx = place.first - x, dy = place.second - y;
-      return peak * decayed(-exponent * (dx * dx + dy * dy));
-    };
-    loop(
-        beam_label, (number + lane_count - 1) / lane_count, KOKKOS_LAMBDA(LocalIndex group) {
-          const LocalIndex first = group * lane_count;
-          if (number - first >= lane_count) return store_lanes(&flux(first), at(&places(first, 0)));
-          // Through the lanes, too: a particle's flux does not depend on who is beside it.
-          double eight[3 * lane_count] = {}, values[lane_count];
-          for (LocalIndex k = 0; k < 3 * (number - first); ++k) eight[k] = places.data()[3 * first + k];
-          store_lanes(values, at(eight));
-          for (LocalIndex i = first; i < number; ++i) flux(i) = values[i - first];
-        });
-#else
-    loop(
-        beam_label, number, KOKKOS_LAMBDA(LocalIndex i) {
-          const double dx = places(i, 0) - x;
-          const double dy = places(i, 1) - y;
-          flux(i) = peak * exp(exponent * (dx * dx + dy * dy));
-        });
-#endif
   }
 
  private:
-  std::string path_;
-  double power_;
-  double width_;
-  double start_[2];
-  double velocity_[2];
-  bool printed_;
+  const HeatSource& source_;
+  std::size_t count_;
+  HeatSource::SetPoint set_;
+  VectorView one_;
 };
 
 class UniformFlux final : public HeatSource {
@@ -123,9 +53,13 @@ class NoHeatSource final : public HeatSource {
   void flux(double, ConstPositionView, VectorView q) const override { Kokkos::deep_copy(ExecutionSpace(), q, 0.0); }
 };
 
-KILN_REGISTER(HeatSource, GaussianBeam, "gaussian beam", "moving Gaussian beam (Eq. 9)");
 KILN_REGISTER(HeatSource, UniformFlux, "uniform flux", "the same flux everywhere on the heated surface");
 KILN_REGISTER(HeatSource, NoHeatSource, "none", "no heat enters");
 
 }  // namespace
+
+std::unique_ptr<PointFluxes> HeatSource::at_points(std::size_t count, SetPoint set) const {
+  return std::make_unique<OneAfterTheOther>(*this, count, std::move(set));
+}
+
 }  // namespace kiln

@@ -32,40 +32,54 @@ constexpr std::size_t short_product = 1 << 15;
 constexpr int narrow = 16;
 
 #ifdef KILN_LANES
-/// Rows i … i + Blocks · lane_count − 1 of y = b + A x; the last block ends at row `end` and may begin in the one
-/// before it. Without b: y = A x.
-template <int Blocks>
-void affine_rows(const double* b, const ConstMatrixView& a, const double* x, double* y, std::size_t i,
+/// Columns next to each other, the first of them and how far apart they begin.
+template <class Number>
+struct Strided {
+  Number* first;
+  std::size_t stride;
+};
+
+/// Rows i … i + Blocks · lane_count − 1 of y_c = b + A x_c for as many columns c; the last block ends at row `end` and
+/// may begin in the one before it. Without b: y_c = A x_c.
+template <int Blocks, int Columns>
+void affine_rows(const double* b, const ConstMatrixView& a, Strided<const double> x, Strided<double> y, std::size_t i,
                  std::size_t end) {
   std::size_t first[Blocks];
   for (int block = 0; block < Blocks; ++block) first[block] = i + block * lane_count;
   first[Blocks - 1] = std::min(first[Blocks - 1], end - lane_count);
-  Lanes sums[Blocks] = {};
+  Lanes sums[Columns][Blocks] = {};
   if (b != nullptr) {
-    for (int block = 0; block < Blocks; ++block) sums[block] = lanes_at(b + first[block]);
+    for (int c = 0; c < Columns; ++c) {
+      for (int block = 0; block < Blocks; ++block) sums[c][block] = lanes_at(b + first[block]);
+    }
   }
   for (std::size_t k = 0; k < a.extent(1); ++k) {
     const double* const column = &a(0, k);
-    const Lanes factor = all_lanes(x[k]);
-    for (int block = 0; block < Blocks; ++block) sums[block] += lanes_at(column + first[block]) * factor;
+    for (int c = 0; c < Columns; ++c) {
+      const Lanes factor = all_lanes(x.first[c * x.stride + k]);
+      for (int block = 0; block < Blocks; ++block) sums[c][block] += lanes_at(column + first[block]) * factor;
+    }
   }
-  for (int block = 0; block < Blocks; ++block) store_lanes(y + first[block], sums[block]);
+  for (int c = 0; c < Columns; ++c) {
+    for (int block = 0; block < Blocks; ++block) store_lanes(y.first + c * y.stride + first[block], sums[c][block]);
+  }
 }
 
 /// The same of all rows, at least lane_count.
-void affine_by_lanes(const double* b, const ConstMatrixView& a, const double* x, double* y) {
+template <int Columns>
+void affine_by_lanes(const double* b, const ConstMatrixView& a, Strided<const double> x, Strided<double> y) {
   const std::size_t rows = a.extent(0);
   std::size_t i = 0;
-  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4>(b, a, x, y, i, rows);
+  for (; i + 4 * lane_count <= rows; i += 4 * lane_count) affine_rows<4, Columns>(b, a, x, y, i, rows);
   switch ((rows - i + lane_count - 1) / lane_count) {
     case 1:
-      return affine_rows<1>(b, a, x, y, i, rows);
+      return affine_rows<1, Columns>(b, a, x, y, i, rows);
     case 2:
-      return affine_rows<2>(b, a, x, y, i, rows);
+      return affine_rows<2, Columns>(b, a, x, y, i, rows);
     case 3:
-      return affine_rows<3>(b, a, x, y, i, rows);
+      return affine_rows<3, Columns>(b, a, x, y, i, rows);
     case 4:
-      return affine_rows<4>(b, a, x, y, i, rows);
+      return affine_rows<4, Columns>(b, a, x, y, i, rows);
   }
 }
 
@@ -100,13 +114,26 @@ void transposed_by_lanes(const ConstMatrixView& a, const double* x, double* y) {
 /// y = b + A x without BLAS; without b: y = A x.
 void short_affine(const double* b, const ConstMatrixView& a, const double* x, double* y) {
 #ifdef KILN_LANES
-  if (a.extent(0) >= lane_count) return affine_by_lanes(b, a, x, y);
+  if (a.extent(0) >= lane_count) return affine_by_lanes<1>(b, a, {x, 0}, {y, 0});
 #endif
   for (std::size_t i = 0; i < a.extent(0); ++i) {
     double sum = b == nullptr ? 0.0 : b[i];
     for (std::size_t k = 0; k < a.extent(1); ++k) sum += a(i, k) * x[k];
     y[i] = sum;
   }
+}
+
+/// C = A B without BLAS.
+void short_product_of(const ConstMatrixView& a, const ConstMatrixView& b, const MatrixView& c) {
+  std::size_t j = 0;
+#ifdef KILN_LANES
+  // Sums that do not wait for each other, and share what they read of A.
+  constexpr std::size_t at_once = 4;
+  for (; a.extent(0) >= lane_count && j + at_once <= c.extent(1); j += at_once) {
+    affine_by_lanes<at_once>(nullptr, a, {&b(0, j), b.stride(1)}, {&c(0, j), c.stride(1)});
+  }
+#endif
+  for (; j < c.extent(1); ++j) short_affine(nullptr, a, &b(0, j), &c(0, j));
 }
 
 }  // namespace
@@ -151,13 +178,8 @@ void product(Transpose transpose_a, Transpose transpose_b, double alpha, const C
   }
   if (transpose_b == Transpose::no && alpha == 1.0 && beta == 0.0 && a.size() <= short_product &&
       columns(c) <= narrow) {
-    for (int j = 0; j < columns(c); ++j) {
-      if (transpose_a == Transpose::yes) {
-        transposed(a, &b(0, j), &c(0, j));
-      } else {
-        short_affine(nullptr, a, &b(0, j), &c(0, j));
-      }
-    }
+    if (transpose_a == Transpose::no) return short_product_of(a, b, c);
+    for (int j = 0; j < columns(c); ++j) transposed(a, &b(0, j), &c(0, j));
     return;
   }
   Blas().GEMM(transpose_a == Transpose::yes ? Teuchos::TRANS : Teuchos::NO_TRANS,

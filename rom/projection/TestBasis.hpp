@@ -33,12 +33,13 @@ class LspgTestBasis : public TestBasis {
 class GnatTestBasis : public TestBasis {
  public:
   /// gappy_operator: the columns of A at this rank's rows, residual modes × (rows × components).
-  explicit GnatTestBasis(MatrixView gappy_operator) : gappy_operator_(gappy_operator) {}
+  explicit GnatTestBasis(MatrixView gappy_operator);
   ConstMatrixView form(ConstMatrixView tangent, ConstMatrixView jacobian_tangent,
                        const Communicator& communicator) override;
 
  private:
   ConstMatrixView gappy_operator_;
+  MatrixView gappy_operator_transposed_;  ///< products with columns of length n_p need no sums across a vector
   MatrixView reduced_, test_;
 };
 

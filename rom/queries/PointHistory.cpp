@@ -27,6 +27,7 @@ PointHistory::PointHistory(const LinearMultistep& scheme, double step, std::size
 }
 
 void PointHistory::allocate_rows(std::size_t rows) {
+  if (history_.extent(1) == rows) return;
   const bool keep_rates = scheme_.coefficients().uses_earlier_rates() || scheme_.starter().uses_earlier_rates();
   for (Level& level : levels_) {
     level.u = MatrixView("kiln::rom::earlier states of points", points_, rows);

@@ -20,7 +20,7 @@ class PointHistory {
 
   PointHistory(const LinearMultistep& scheme, double step, std::size_t points, std::size_t coordinates);
 
-  /// Arrays for these many rows × components.
+  /// Arrays for these many rows × components; those it has, if they are of this size.
   void allocate_rows(std::size_t rows);
   /// Calls `evaluate` for each known level, oldest first.
   void visit(const std::function<void(Level&)>& evaluate);

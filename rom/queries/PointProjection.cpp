@@ -22,17 +22,28 @@ PointProjection::PointProjection(Projection& projection, const ParameterPoints& 
       jacobian_(model_, settings_.jacobian),
       test_(points.count(), rows_, size_),
       inverse_transposed_(points.count(), size_, size_),
-      state_("kiln::rom::states of the sources of points", points.count(), states_.size()),
-      residual_("kiln::rom::residuals of points", points.count(), rows_),
-      g_("kiln::rom::reduced residuals of points", points.count(), size_),
-      step_("kiln::rom::updates of points", points.count(), size_),
       norms_(points.count()),
       everyone_(points.count(), 1),
       iterates_(points.count()),
+      moves_(points.count()),
       point_state_("kiln::rom::state of a point", states_.size()),
       jacobian_tangent_("kiln::rom::J Phi of a point", rows_, size_),
       small_("kiln::rom::reduced Jacobian of a point", size_, size_),
-      inverse_("kiln::rom::transposed inverse reduced Jacobian of a point", size_, size_) {}
+      inverse_("kiln::rom::transposed inverse reduced Jacobian of a point", size_, size_) {
+  const auto array = [&](const char* label, std::size_t columns) {
+    return uncounted(owners_.emplace_back(std::string(label), points.count(), columns));
+  };
+  state_ = array("kiln::rom::states of the sources of points", states_.size());
+  residual_ = array("kiln::rom::residuals of points", rows_);
+  g_ = array("kiln::rom::reduced residuals of points", size_);
+  step_ = array("kiln::rom::updates of points", size_);
+}
+
+void PointProjection::take(const ParameterPoints& points) {
+  points_ = points;
+  rates_->take(points);
+  age_ = -1;
+}
 
 void PointProjection::evaluate(ConstMatrixView x, double time, MatrixView u, MatrixView f) {
   states_.states(x, everyone_, state_);
@@ -106,13 +117,18 @@ void PointProjection::reduce_residual(const StepResidual& residual, double gamma
 
 void PointProjection::update(MatrixView x) {
   inverse_transposed_.multiply_transposed(g_, iterates_, step_);
-  const MatrixView own = own_coordinates(x, trial_);
-  for (std::size_t k = 0; k < size_; ++k) {
-    for (std::size_t point = 0; point < iterates_.size(); ++point) {
-      const double step = step_(point, k);
-      own(point, k) -= iterates_[point] != 0 ? step : 0.0;
+  std::copy(iterates_.begin(), iterates_.end(), moves_.begin());
+  double* const own = &x(0, trial_.first());
+  over_points(iterates_.size(), iterates_, [&](std::size_t point, auto width) {
+    using Width = decltype(width);
+    const auto moves = Width::at(&moves_[point]);
+    for (std::size_t k = 0; k < size_; ++k) {
+      double* const coordinate = own + k * iterates_.size() + point;
+      // A point left behind has steps that are no numbers.
+      const auto step = moves > 0.0 ? Width::at(&step_(point, k)) : typename Width::Numbers{};
+      Width::store(coordinate, Width::at(coordinate) - step);
     }
-  }
+  });
 }
 
 void PointProjection::leave_behind(std::size_t point, const char* what, double time, MatrixView x, ConstMatrixView f,
@@ -165,8 +181,10 @@ void PointProjection::iterate(const StepResidual& residual, ConstMatrixView hist
   }
 }
 
-void PointProjection::solve(const StepResidual& residual, ConstMatrixView history, MatrixView x, MatrixView u,
-                            MatrixView f, std::vector<Point>& points) {
+void PointProjection::solve(const StepResidual& residual, ConstMatrixView history_held, MatrixView x_held, MatrixView u,
+                            MatrixView f_held, std::vector<Point>& points) {
+  const ConstMatrixView history = uncounted(history_held);
+  const MatrixView x = uncounted(x_held), f = uncounted(f_held);
   const bool is_explicit = residual.gamma == 0.0;
   const bool serves = age_ >= 0 && frozen_alpha_ == residual.alpha && frozen_gamma_ == residual.gamma;
   if (!serves || (!is_explicit && age_ >= settings_.refresh)) linearise(residual, x, points);

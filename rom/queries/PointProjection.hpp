@@ -26,6 +26,9 @@ class PointProjection {
   /// `projection` lends model, trial space and test basis; none of its own state is touched.
   PointProjection(Projection& projection, const ParameterPoints& points);
 
+  /// Goes over to other points, of the same number.
+  void take(const ParameterPoints& points);
+
   std::size_t row_size() const { return rows_; }
   /// Takes the states in which the window begins.
   void begin(ConstMatrixView x) { states_.begin(x); }
@@ -63,12 +66,16 @@ class PointProjection {
   PointMatrices test_;                ///< Ψ of each point
   PointMatrices inverse_transposed_;  ///< (ΨᵀJ̃Φ)⁻ᵀ of each point
 
+  // Handed on in each iteration, without an owner to count.
   MatrixView state_;           ///< points by sources × components
   MatrixView residual_;        ///< points by rows × components
   MatrixView g_, step_;        ///< points × M
   std::vector<double> norms_;  ///< ‖Ψᵀr‖₂ of each point
   PointMask everyone_;
-  PointMask iterates_;  ///< those that have not converged yet
+  PointMask iterates_;         ///< those that have not converged yet
+  std::vector<double> moves_;  ///< the same as numbers, for vectors
+
+  std::vector<MatrixView> owners_;  ///< of the arrays above
 
   // Of one point.
   VectorView point_state_;

@@ -10,7 +10,7 @@ namespace kiln {
 PointStates::PointStates(std::size_t points, const TrialSpace& space) : space_(space) {
   if (!space.affine()) throw std::logic_error("PointStates: the trial space is not affine");
   const VectorView anywhere("kiln::rom::coordinates of a point", space.first() + space.size());
-  tangent_ = space.tangent(anywhere);
+  tangent_ = uncounted(space.tangent(anywhere));
   beginning_ = MatrixView("kiln::rom::states of points at the window's beginning", points, tangent_.extent(0));
 }
 

@@ -11,35 +11,50 @@ namespace kiln {
 
 ReducedBlock::ReducedBlock(PetrovGalerkin& method, const LinearMultistep& scheme, AdvancesTogether::Request request)
     : method_(method),
-      points_(std::move(request.points)),
-      everyone_(points_.count(), 1),
+      count_(request.points),
+      everyone_(count_, 1),
       places_(std::move(request.places)),
-      history_(scheme, request.step, points_.count(), local_size(*method.coordinates())),
-      x_("kiln::rom::coordinates of points", points_.count(), local_size(*method.coordinates())),
-      states_(points_.count()),
-      outcomes_(points_.count()) {}
+      history_(scheme, request.step, count_, local_size(*method.coordinates())),
+      x_("kiln::rom::coordinates of points", count_, local_size(*method.coordinates())),
+      windows_(method.window_count()),
+      states_(count_),
+      outcomes_(count_) {}
 
-void ReducedBlock::enter(std::size_t window) {
-  window_ = window;
+ReducedBlock::Window& ReducedBlock::window(std::size_t number) {
+  std::unique_ptr<Window>& window = windows_[number];
+  if (window == nullptr) {
+    window = std::make_unique<Window>();
+    window->projection = std::make_unique<PointProjection>(method_.projection(number), points_);
+    window->told_space = method_.held(number).restricted(places_, static_cast<int>(method_.fields().size()));
+    window->told = std::make_unique<PointStates>(count_, *window->told_space);
+  } else {
+    window->projection->take(points_);
+  }
+  return *window;
+}
+
+void ReducedBlock::enter(std::size_t number) {
+  window_ = number;
   whole_levels_ = 0;
-  projection_ = std::make_unique<PointProjection>(method_.projection(window), points_);
-  told_space_ = method_.held(window).restricted(places_, static_cast<int>(method_.fields().size()));
-  told_ = std::make_unique<PointStates>(points_.count(), *told_space_);
-  told_->begin(x_);
-  history_.allocate_rows(projection_->row_size());
+  Window& entered = window(number);
+  entered.told->begin(x_);
+  history_.allocate_rows(entered.projection->row_size());
   // Oldest first: the state in which the newest level ends is the one the window begins in.
-  history_.visit([this](PointHistory::Level& level) {
-    projection_->begin(level.x);
-    projection_->evaluate(level.x, level.time, level.u, level.f);
+  history_.visit([&entered](PointHistory::Level& level) {
+    entered.projection->begin(level.x);
+    entered.projection->evaluate(level.x, level.time, level.u, level.f);
   });
 }
 
-void ReducedBlock::start() {
+void ReducedBlock::start(const ParameterPoints& points) {
+  if (points.count() != count_) throw std::invalid_argument("ReducedBlock::start: points of another number");
+  points_ = points;
+  started_ = true;
   history_.forget();
-  states_.assign(points_.count(), {});
-  outcomes_.assign(points_.count(), {});
+  states_.assign(count_, {});
+  outcomes_.assign(count_, {});
   const VectorView one("kiln::rom::coordinates of a point", x_.extent(1));
-  for (std::size_t point = 0; point < points_.count(); ++point) {
+  for (std::size_t point = 0; point < count_; ++point) {
     points_.set(point, method_.parameters());
     method_.projection(0).initial(one);
     put_point(one, point, x_);
@@ -48,8 +63,9 @@ void ReducedBlock::start() {
   PointHistory::Level& first = history_.next();
   Kokkos::deep_copy(first.x, x_);
   first.time = 0.0;
-  projection_->begin(first.x);
-  projection_->evaluate(first.x, first.time, first.u, first.f);
+  PointProjection& projection = *windows_.front()->projection;
+  projection.begin(first.x);
+  projection.evaluate(first.x, first.time, first.u, first.f);
   history_.accept();
 }
 
@@ -66,12 +82,13 @@ void ReducedBlock::keep_coordinates(const MatrixView& kept) {
 }
 
 void ReducedBlock::advance(int step, double time) {
-  if (projection_ == nullptr) throw std::logic_error("ReducedBlock::advance: not started");
-  const std::size_t window = method_.window_at(time);
-  if (window != window_) enter(window);
+  if (!started_) throw std::logic_error("ReducedBlock::advance: not started");
+  const std::size_t number = method_.window_at(time);
+  if (number != window_) enter(number);
   const ConstMatrixView history = history_.gather();
   PointHistory::Level& next = history_.next();
-  projection_->solve({history_.scheme().alpha[0], history_.gamma(), time, {}}, history, x_, next.u, next.f, states_);
+  windows_[window_]->projection->solve({history_.scheme().alpha[0], history_.gamma(), time, {}}, history, x_, next.u,
+                                       next.f, states_);
   keep_coordinates(next.x);
   next.time = time;
   history_.accept();

@@ -19,28 +19,35 @@ class ReducedBlock final : public PointBlock {
  public:
   ReducedBlock(PetrovGalerkin& method, const LinearMultistep& scheme, AdvancesTogether::Request request);
 
-  void start() override;
+  void start(const ParameterPoints& points) override;
   void advance(int step, double time) override;
-  void tell(MatrixView u) const override { told_->states(x_, everyone_, u); }
+  void tell(MatrixView u) const override { windows_[window_]->told->states(x_, everyone_, u); }
   const std::vector<PointOutcome>& outcomes() const override { return outcomes_; }
 
  private:
+  struct Window {
+    std::unique_ptr<PointProjection> projection;
+    std::unique_ptr<TrialSpace> told_space;  ///< at the places
+    std::unique_ptr<PointStates> told;
+  };
+  /// Made when a block of points first enters it.
+  Window& window(std::size_t number);
   /// Goes over to another window: its equations, and the history at its rows.
-  void enter(std::size_t window);
+  void enter(std::size_t number);
   /// Copies x_ into a level of the history.
   void keep_coordinates(const MatrixView& kept);
 
   PetrovGalerkin& method_;
+  std::size_t count_;  ///< of points
   ParameterPoints points_;
   PointMask everyone_;
   std::vector<LocalIndex> places_;
   PointHistory history_;
   MatrixView x_;  ///< points × coordinates
+  std::vector<std::unique_ptr<Window>> windows_;
   std::size_t window_ = 0;
-  std::size_t whole_levels_ = 0;                 ///< levels written since the window began
-  std::unique_ptr<PointProjection> projection_;  ///< of the window
-  std::unique_ptr<TrialSpace> told_space_;       ///< likewise, at the places
-  std::unique_ptr<PointStates> told_;
+  bool started_ = false;
+  std::size_t whole_levels_ = 0;  ///< levels written since the window began
   std::vector<PointProjection::Point> states_;
   std::vector<PointOutcome> outcomes_;
 };

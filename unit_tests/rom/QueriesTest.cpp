@@ -57,23 +57,27 @@ class Running {
                                              TimeScheme::Context{*method_, values.step})) {}
 
   Method& method() { return *method_; }
-  std::unique_ptr<PointBlock> block(const ParameterPoints& points) {
+  std::unique_ptr<PointBlock> block(std::size_t points) {
     return dynamic_cast<AdvancesTogether&>(*method_).point_block({points, *scheme_, values_.step, places});
   }
 
   std::vector<History> together(const ParameterPoints& points, std::vector<PointOutcome>* outcomes = nullptr) {
-    const auto running = block(points);
+    return together(*block(points.count()), points, outcomes);
+  }
+
+  std::vector<History> together(PointBlock& running, const ParameterPoints& points,
+                                std::vector<PointOutcome>* outcomes = nullptr) {
     std::vector<History> histories(points.count());
     const MatrixView told("told", points.count(), places.size());
-    running->start();
+    running.start(points);
     for (int step = 1; step <= values_.steps; ++step) {
-      running->advance(step, step * values_.step);
-      running->tell(told);
+      running.advance(step, step * values_.step);
+      running.tell(told);
       for (std::size_t point = 0; point < points.count(); ++point) {
         for (std::size_t k = 0; k < places.size(); ++k) histories[point].push_back(told(point, k));
       }
     }
-    if (outcomes != nullptr) *outcomes = running->outcomes();
+    if (outcomes != nullptr) *outcomes = running.outcomes();
     return histories;
   }
 
@@ -210,12 +214,34 @@ TEST(Together, LeavesADivergedPointBehind) {
   }
 }
 
+TEST(Together, ABlockServesOtherPointsLikeANewOne) {
+  const TestFolder folder;
+  const Case values = trained(folder);
+  ParameterPoints first = eleven(), second = eleven();
+  first.values[2][0] = 1e300;  // diverges, and must leave nothing behind
+  for (std::vector<double>& point : second.values) point[0] *= 1.07;
+  Running running(values);
+  std::vector<PointOutcome> outcomes, expected_outcomes;
+  const std::vector<History> expected = running.together(second, &expected_outcomes);
+  const auto block = running.block(11);
+  EXPECT_THROW(block->advance(1, values.step), std::logic_error);
+  const std::vector<History> before = running.together(*block, first, &outcomes);
+  EXPECT_NE(outcomes[2].divergence, "");
+  EXPECT_NE(before[3], expected[3]);
+  EXPECT_EQ(running.together(*block, second, &outcomes), expected);
+  for (std::size_t point = 0; point < 11; ++point) {
+    EXPECT_EQ(outcomes[point].divergence, "");
+    EXPECT_EQ(outcomes[point].residuals, expected_outcomes[point].residuals);
+  }
+  EXPECT_THROW(block->start({first.names, {first.values[0]}}), std::invalid_argument);
+}
+
 void expect_refusal(const Case& values, const Teuchos::ParameterList& input, const std::string& path) {
   const auto method = Registry<Method>::create(input.sublist("method"), Method::Context{input, self()});
   const auto scheme =
       Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"), TimeScheme::Context{*method, values.step});
   try {
-    dynamic_cast<AdvancesTogether&>(*method).point_block({eleven(), *scheme, values.step, places});
+    dynamic_cast<AdvancesTogether&>(*method).point_block({eleven().count(), *scheme, values.step, places});
     ADD_FAILURE() << path << " was not refused";
   } catch (const InputError& error) {
     EXPECT_EQ(error.problems().front().path, path);

@@ -102,6 +102,63 @@ TEST(HeatPoints, AnswerForTheWantedPointsAndLaterForTheOthers) {
   expect_rates(0, 19);
 }
 
+TEST(HeatPoints, GoOverToOtherPoints) {
+  const auto model = HeatCase().model(alone());
+  Points points(*model, 11);
+  const auto rates = model->at_points(points.parameters);
+  rates->rates(points.u, 1e-4, points.all(), points.f);
+  for (std::vector<double>& point : points.parameters.values) point[0] *= 1.5;
+  const MatrixView expected("expected", points.f.extent(0), points.f.extent(1));
+  model->at_points(points.parameters)->rates(points.u, 1e-4, points.all(), expected);
+  EXPECT_NE(points.f(3, 600), expected(3, 600));
+  rates->take(points.parameters);
+  // At the same time and in the same states: what was kept of the points before must not serve.
+  rates->rates(points.u, 1e-4, points.all(), points.f);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(points.f.data()[i], expected.data()[i]);
+}
+
+/// Sources with vectors of points of their own, and those that go point by point.
+TEST(HeatPoints, FluxesAreThoseOfEachPoint) {
+  const auto model = HeatCase().model(alone());
+  const PositionView positions("positions", 21);
+  for (std::size_t i = 0; i < positions.extent(0); ++i) {
+    positions(i, 0) = 0.02e-3 * static_cast<double>(i);
+    positions(i, 1) = 0.3e-3 - 0.01e-3 * static_cast<double>(i);
+  }
+  Teuchos::ParameterList printed = HeatCase::beam(40.0);
+  printed.set("normalisation", std::string("printed"));
+  Teuchos::ParameterList uniform("model.heat_source");
+  uniform.set("type", std::string("uniform flux")).set("flux", 2e7);
+  for (const Teuchos::ParameterList& list : {HeatCase::beam(40.0), printed, uniform}) {
+    const auto source = Registry<HeatSource>::create(list, {});
+    const bool is_beam = list.isParameter("width");
+    const auto set = [&](std::size_t point) {
+      if (!is_beam) return;
+      const double k = static_cast<double>(point);
+      const std::pair<const char*, double> values[] = {{"power", 30.0 + k},
+                                                       {"width", (50.0 + k) * 1e-6},
+                                                       {"start.x", 0.01e-3 * k},
+                                                       {"start.y", 0.1e-3 + 1e-5 * k},
+                                                       {"velocity.x", 0.4 + 0.02 * k},
+                                                       {"velocity.y", -0.1 * k}};
+      for (const auto& [name, value] : values) source->parameters().set(name, value);
+    };
+    for (const std::size_t count : {1, 8, 13}) {
+      const MatrixView q("q", count, positions.extent(0));
+      source->at_points(count, set)->flux(1e-4, positions, q);
+      const VectorView expected("expected", positions.extent(0));
+      for (std::size_t point = 0; point < count; ++point) {
+        set(point);
+        source->flux(1e-4, positions, expected);
+        for (std::size_t i = 0; i < positions.extent(0); ++i) {
+          EXPECT_GT(expected(i), 0.0);
+          EXPECT_NEAR(q(point, i), expected(i), 1e-14 * expected(i)) << "point " << point << ", position " << i;
+        }
+      }
+    }
+  }
+}
+
 TEST(HeatPoints, RefuseOtherNumbersOfPointsAndUnknownParameters) {
   const auto model = HeatCase().model();
   const Points points(*model, 3), others(*model, 4);
