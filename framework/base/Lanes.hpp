@@ -13,13 +13,13 @@ inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(lane_count * sizeof(double))));
 using HalfLanes = double __attribute__((vector_size(lane_count / 2 * sizeof(double))));
 
-inline Lanes lanes_at(const double* numbers) {
-  Lanes lanes;
-  __builtin_memcpy(&lanes, numbers, sizeof lanes);
-  return lanes;
-}
+/// Lanes where numbers lie, at any of them. Unlike a copy of bytes, a store of these does not make the compiler read
+/// pointers anew, since it can only have changed numbers.
+using LanesInPlace = double __attribute__((vector_size(lane_count * sizeof(double)), aligned(alignof(double))));
 
-inline void store_lanes(double* numbers, const Lanes& lanes) { __builtin_memcpy(numbers, &lanes, sizeof lanes); }
+inline Lanes lanes_at(const double* numbers) { return *reinterpret_cast<const LanesInPlace*>(numbers); }
+
+inline void store_lanes(double* numbers, const Lanes& lanes) { *reinterpret_cast<LanesInPlace*>(numbers) = lanes; }
 
 inline Lanes all_lanes(double x) { return Lanes{x, x, x, x, x, x, x, x}; }
 

@@ -9,12 +9,15 @@ namespace kiln {
 ///     u = u_ref + Σ_{v<w} Φ_v û_v + Φ_w û_w
 ///
 /// The sum over earlier windows is the state in which they ended: with û_w = 0 the window begins exactly there,
-/// whatever the bases are. It is formed once and kept while the earlier coordinates stay as they are.
+/// whatever the bases are. It is formed once and kept while the earlier coordinates stay as they are. Where the window
+/// before is at hand, it is that one's state, which adds a single window to a sum that is known already.
 class AffineBasis : public TrialSpace {
  public:
-  /// reference: u_ref of the particles; modes: their rows of [Φ_0 … Φ_w]; first: the column at which Φ_w begins. Throws
-  /// std::logic_error for sizes that do not fit.
-  AffineBasis(ConstVectorView reference, ConstMatrixView modes, int first = 0);
+  /// reference: u_ref of the particles; modes: their rows of [Φ_0 … Φ_w]; first: the column at which Φ_w begins;
+  /// previous: the space of window w − 1 told for the same particles, if there is one. Throws std::logic_error for
+  /// sizes that do not fit.
+  AffineBasis(ConstVectorView reference, ConstMatrixView modes, int first = 0,
+              std::shared_ptr<const TrialSpace> previous = nullptr);
 
   int first() const override { return first_; }
   int size() const override { return static_cast<int>(tangent_.extent(1)); }
@@ -29,6 +32,7 @@ class AffineBasis : public TrialSpace {
   ConstVectorView reference_;
   ConstMatrixView modes_, tangent_;
   int first_;
+  std::shared_ptr<const TrialSpace> previous_;
   VectorView earlier_;  ///< the coordinates of earlier windows that beginning_ belongs to
   VectorView beginning_;
 };

@@ -36,13 +36,14 @@ PetrovGalerkin::Parts full_size_parts(const std::shared_ptr<Model>& model, const
   PetrovGalerkin::Parts parts;
   parts.particles = model->rows();
   parts.positions = Kokkos::subview(model->positions(), std::make_pair(std::size_t(0), particles), Kokkos::ALL);
+  std::shared_ptr<const TrialSpace> space_on_sources, space_on_rows;
   for (const TimeWindow& window : windows) {
     const ConstMatrixView on_sources = dense::leading_columns(modes, window.first + window.size);
     const ConstVectorView reference_of_rows = Kokkos::subview(reference, std::make_pair(std::size_t(0), rows));
-    parts.windows.push_back(
-        {window.end,
-         {model, std::make_unique<AffineBasis>(reference, on_sources, window.first), test_basis()},
-         std::make_unique<AffineBasis>(reference_of_rows, dense::row_block(on_sources, 0, rows), window.first)});
+    space_on_sources = std::make_shared<AffineBasis>(reference, on_sources, window.first, space_on_sources);
+    space_on_rows = std::make_shared<AffineBasis>(reference_of_rows, dense::row_block(on_sources, 0, rows),
+                                                  window.first, space_on_rows);
+    parts.windows.push_back({window.end, {model, space_on_sources, test_basis()}, space_on_rows});
   }
   return parts;
 }

@@ -57,9 +57,10 @@ PositionView positions_at(const Map& particles, const ParticleTable& table) {
   return positions;
 }
 
-std::unique_ptr<TrialSpace> trial_space(const ReductionFile::Rows& rows, const TimeWindow& window) {
-  return std::make_unique<AffineBasis>(rows.reference, dense::leading_columns(rows.modes, window.first + window.size),
-                                       window.first);
+std::shared_ptr<const TrialSpace> trial_space(const ReductionFile::Rows& rows, const TimeWindow& window,
+                                              const std::shared_ptr<const TrialSpace>& previous = nullptr) {
+  return std::make_shared<AffineBasis>(rows.reference, dense::leading_columns(rows.modes, window.first + window.size),
+                                       window.first, previous);
 }
 
 }  // namespace
@@ -92,6 +93,7 @@ HyperReduced::Made HyperReduced::made_of(const Opened& opened, const Meshes& mes
   made.parts.positions = positions_at(*made.parts.particles, opened.held);
   const ReductionFile::Rows held =
       rows_at(*made.parts.particles, {&opened.held}, reduction.coordinates(), opened.name());
+  std::shared_ptr<const TrialSpace> held_before;
   // The hardest window speaks for all.
   std::size_t residual_rank = 0, sampled = 0, sources = 0;
   double sigma_min = std::numeric_limits<double>::infinity(), condition = 1.0;
@@ -101,8 +103,10 @@ HyperReduced::Made HyperReduced::made_of(const Opened& opened, const Meshes& mes
     const Mesh mesh = meshes(w, sample);
     auto test = std::make_unique<GnatTestBasis>(
         local_columns(sample, *mesh.model->rows(), reduction.components(), opened.name()));
-    made.parts.windows.push_back(
-        {window.end, {mesh.model, trial_space(mesh.basis, window), std::move(test)}, trial_space(held, window)});
+    made.parts.windows.push_back({window.end,
+                                  {mesh.model, trial_space(mesh.basis, window), std::move(test)},
+                                  trial_space(held, window, held_before)});
+    held_before = made.parts.windows.back().held;
     residual_rank = std::max(residual_rank, sample.gappy_operator.shape[0]);
     sampled = std::max(sampled, sample.rows.size());
     sources = std::max(sources, mesh.sources);

@@ -18,7 +18,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   struct Window {
     double end;  ///< s; TimeWindow
     Projection::Parts projection;
-    std::unique_ptr<TrialSpace> held;  ///< on the held particles
+    std::shared_ptr<const TrialSpace> held;  ///< on the held particles
   };
 
   /// What a reduced method is made of.
@@ -70,7 +70,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   struct OwnedWindow {
     double end;
     std::unique_ptr<Projection> projection;
-    std::unique_ptr<TrialSpace> held;
+    std::shared_ptr<const TrialSpace> held;
   };
   Projection& projection() const { return *windows_[current_].projection; }
 

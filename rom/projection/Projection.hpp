@@ -34,8 +34,8 @@ class Projection {
  public:
   struct Parts {
     std::shared_ptr<Model> model;
-    std::unique_ptr<TrialSpace> trial;  ///< on the model's sources
-    std::unique_ptr<TestBasis> test;    ///< on its rows
+    std::shared_ptr<const TrialSpace> trial;  ///< on the model's sources
+    std::unique_ptr<TestBasis> test;          ///< on its rows
   };
 
   /// When Ψ and the factors of Ψᵀ J̃Φ are formed.
@@ -101,7 +101,7 @@ class Projection {
                                    ConstVectorView measure) const;
 
   std::shared_ptr<Model> model_;
-  std::unique_ptr<TrialSpace> trial_;
+  std::shared_ptr<const TrialSpace> trial_;
   std::unique_ptr<TestBasis> test_basis_;
   NewtonSettings settings_;
   Teuchos::RCP<const Communicator> communicator_;

@@ -8,6 +8,8 @@
 #include "Projections.hpp"
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "rom/basis/AffineBasis.hpp"
+#include "rom/linear_algebra/Dense.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/training/TimeWindows.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
@@ -22,6 +24,51 @@ using test::model_of;
 using test::self;
 using test::train;
 using test::world;
+
+/// Two windows of two modes each, on five particles.
+struct TwoWindows {
+  TwoWindows() {
+    for (std::size_t i = 0; i < 5; ++i) {
+      reference(i) = 300.0 + 10.0 * static_cast<double>(i);
+      for (std::size_t k = 0; k < 4; ++k) modes(i, k) = std::sin(1.0 + 2.3 * static_cast<double>(i * 4 + k));
+    }
+  }
+  AffineBasis second(std::shared_ptr<const TrialSpace> first = nullptr) const { return {reference, modes, 2, first}; }
+  std::shared_ptr<const TrialSpace> first() const {
+    return std::make_shared<AffineBasis>(reference, dense::leading_columns(ConstMatrixView(modes), 2));
+  }
+  VectorView state(const TrialSpace& space, const std::vector<double>& coordinates) const {
+    const VectorView x("x", 4), u("u", 5);
+    std::copy(coordinates.begin(), coordinates.end(), x.data());
+    space.state(x, u);
+    return u;
+  }
+  VectorView reference{"reference", 5};
+  MatrixView modes{"modes", 5, 4};
+};
+
+TEST(AffineBasis, BeginsWhereTheWindowBeforeItEnds) {
+  const TwoWindows windows;
+  const AffineBasis second = windows.second(windows.first()), alone = windows.second();
+  // There, elsewhere, and back: what is kept of one place must not serve at another.
+  for (const double scale : {1.0, -2.0, 1.0}) {
+    const std::vector<double> x{3.0 * scale, -4.0, 5.0, 6.0 * scale};
+    const VectorView u = windows.state(second, x), expected = windows.state(alone, x);
+    const VectorView anew = windows.state(windows.second(windows.first()), x);
+    for (std::size_t i = 0; i < 5; ++i) {
+      double sum = windows.reference(i);
+      for (std::size_t k = 0; k < 4; ++k) sum += windows.modes(i, k) * x[k];
+      EXPECT_NEAR(u(i), sum, 1e-12);
+      EXPECT_NEAR(u(i), expected(i), 1e-12);
+      EXPECT_EQ(u(i), anew(i)) << "a restart must find the same bits";
+    }
+  }
+}
+
+TEST(AffineBasis, RefusesAWindowBeforeItThatEndsElsewhere) {
+  const TwoWindows windows;
+  EXPECT_THROW(AffineBasis(windows.reference, windows.modes, 3, windows.first()), std::logic_error);
+}
 
 /// A reduced method of several windows, each on all cosines: nothing is left out, so that only the hand-over can go
 /// wrong. The windows end at steps 7, 15 and 25; GNAT samples other particles in each.
