@@ -50,9 +50,7 @@ KOKKOS_FORCEINLINE_FUNCTION Borrowed<View> borrowed(const View& view) {
 /// The same for interfaces that take a view of the counting kind: copies of what this returns do not count either.
 inline VectorView uncounted(const VectorView& view) { return VectorView(view.data(), view.extent(0)); }
 /// Likewise, of a matrix without gaps between its columns.
-inline MatrixView uncounted(const MatrixView& view) {
-  return MatrixView(view.data(), view.extent(0), view.extent(1));
-}
+inline MatrixView uncounted(const MatrixView& view) { return MatrixView(view.data(), view.extent(0), view.extent(1)); }
 inline ConstMatrixView uncounted(const ConstMatrixView& view) {
   return ConstMatrixView(view.data(), view.extent(0), view.extent(1));
 }

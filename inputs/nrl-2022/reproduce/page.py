@@ -176,8 +176,8 @@ class Page:
         parts = [
             "# The NRL report reproduced",
             f"The four experiments of {published.facts['title']}, in its own setting (Case 1: 99.9990 %, Case 2: "
-            "99.9999 % of the snapshots' energy) and in the one that we advise (Kiln: twenty time windows with a small "
-            "basis each, and PTROM's clustered sources). All figures are read from the files of the runs; those of the report stand beside them.",
+            "99.9999 % of the snapshots' energy) and in the one that we advise (Kiln: twenty or more time windows with a "
+            "small basis each, and PTROM's clustered sources). All figures are read from the files of the runs; those of the report stand beside them.",
             self.provenance(),
             "## In short",
             table(overview(results, published)),
