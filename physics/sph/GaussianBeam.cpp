@@ -55,7 +55,8 @@ class GaussianBeam final : public HeatSource {
   }
 
   void flux(double time, ConstPositionView positions, VectorView q) const override {
-    const auto [peak, exponent] = shape();
+    const Shape beam = shape();
+    const double peak = beam.peak, exponent = beam.exponent;
     const double x = start_[0] + velocity_[0] * time;
     const double y = start_[1] + velocity_[1] * time;
     const auto places = borrowed(positions);

@@ -39,7 +39,7 @@ class HeatModel::AtPoints final : public PointRates {
         absorbed_("absorbed power of points", groups_ * static_cast<std::size_t>(model.row_count())),
         pair_fluxes_("pair sums of points", groups_ * static_cast<std::size_t>(model.row_count())),
         summed_(groups_, false) {
-    take(points);
+    AtPoints::take(points);
   }
 
   void take(const ParameterPoints& points) override {
