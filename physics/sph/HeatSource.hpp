@@ -35,7 +35,7 @@ class HeatSource {
 
   /// Gives the live parameters their values at a point.
   using SetPoint = std::function<void(std::size_t point)>;
-  /// This source at `count` points, at least one, with a beam or whatever it is for each. It must outlive the result.
+  /// This source at `count` points, at least one. It must outlive the result.
   virtual std::unique_ptr<PointFluxes> at_points(std::size_t count, SetPoint set) const;
 
   Parameters& parameters() { return parameters_; }

@@ -66,7 +66,7 @@ class MaterialLookup {
   KOKKOS_FORCEINLINE_FUNCTION Number place_of(const Number& u, const Number& last) const {
     const Number place = (u - from_) * inverse_step_;
     const Number below = place < last ? place : last;
-    return below > 0.0 ? below : last - last;
+    return below > 0.0 ? below : Number{};
   }
   /// The place of the table's last row.
   KOKKOS_FORCEINLINE_FUNCTION double last_place() const { return intervals_; }
