@@ -23,18 +23,24 @@ class Snapshots {
   /// makes `append` collective.
   void limit(int columns, Teuchos::RCP<const Communicator> communicator);
 
+  /// Room for `columns` (at most the limit) from now on, asked for in the system's large pages: growing to them a
+  /// quarter at a time costs a fault for each small one.
+  void reserve(std::size_t columns);
+
   /// Adds a column. Throws std::logic_error for another length.
   void append(ConstVectorView column);
   std::size_t rows() const { return rows_; }
   /// Columns held.
   std::size_t count() const { return count_; }
-  /// Columns appended since the last clear().
+  /// Columns appended since the last restart() or clear().
   std::size_t appended() const { return appended_; }
   /// Σσ² of the singular vectors left out, relative to Σσ² of all that was appended.
   double discarded_energy() const { return discarded_ > 0.0 ? discarded_ / appended_energy_ : 0.0; }
   /// rows × count; valid until the next append.
   MatrixView matrix() const;
-  /// Frees the memory; no columns are left.
+  /// No columns are left; their memory stays for the next ones, since a system's fresh pages cost more than the copy.
+  void restart();
+  /// No columns are left, and their memory is freed.
   void clear();
 
  private:
@@ -42,6 +48,7 @@ class Snapshots {
     void operator()(double* values) const { std::free(values); }
   };
   void compress();
+  void grow(std::size_t capacity);
 
   std::size_t rows_;
   std::size_t count_ = 0;

@@ -92,6 +92,7 @@ FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos:
       model_->initial_state(reference_);
       snapshots_ = Snapshots(method.row_size());
       if (settings.hold) snapshots_.limit(*settings.hold, communicator);
+      snapshots_.reserve(learnt_ * ((span.last_step + settings.every - 1) / settings.every));
     }
     points_.set(point, method.parameters());
 

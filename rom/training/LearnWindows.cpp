@@ -99,7 +99,7 @@ WindowReduction LearnWindows::learn_window(double end, Pod basis) {
   PodSettings settings = settings_.residual_basis;
   settings.at_least = basis.truncation.rank;
   Pod residual_basis = pod(residuals_, settings, *communicator_);
-  residuals_.clear();
+  residuals_.restart();
   const Teuchos::ParameterList& sampling = settings_.block.sublist("sampling");
   const std::vector<GlobalIndex> sampled =
       Registry<Sampling>::create(sampling, NoContext{})->sample(*model->rows(), residual_basis.modes, components);

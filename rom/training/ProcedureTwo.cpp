@@ -158,10 +158,12 @@ std::vector<Pod> ProcedureTwo::window_bases(const std::vector<int>& ends, RunRep
   const MatrixView states = snapshots.matrix();
   const std::size_t a_run = snapshots.count() / full_order_->learnt();
   std::size_t begin = 0;
+  Snapshots increments(snapshots.rows());
+  VectorView increment("kiln::rom::increment", snapshots.rows());
   for (const int step : ends) {
     const std::size_t end = (step + every_ - 1) / every_;
-    Snapshots increments(snapshots.rows());
-    VectorView increment("kiln::rom::increment", snapshots.rows());
+    increments.restart();
+    increments.reserve((end - begin) * full_order_->learnt());
     for (std::size_t run = 0; run < full_order_->learnt(); ++run) {
       const std::size_t first = run * a_run;
       for (std::size_t n = first + begin; n < first + end; ++n) {

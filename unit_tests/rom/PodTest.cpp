@@ -288,5 +288,33 @@ TEST(Snapshots, GrowAndRefuseOtherLengths) {
   EXPECT_EQ(message([&] { snapshots.append(VectorView("short", 2)); }), "snapshot 100: 2 values; expected 3");
 }
 
+TEST(Snapshots, RestartAsNewInRoomTheyHave) {
+  const Known known{200, 40, {4.0, 3.0, 2.0, 1.0, 0.5}};
+  const Snapshots all = known.snapshots(*world());
+  const auto append_all = [&all](Snapshots& to) {
+    for (std::size_t j = 0; j < all.count(); ++j) to.append(Kokkos::subview(all.matrix(), Kokkos::ALL, j));
+  };
+  Snapshots fresh(all.rows()), again(all.rows());
+  fresh.limit(12, world());
+  again.limit(12, world());
+  again.reserve(1000);  // no more than the limit
+  VectorView other("other", all.rows());
+  Kokkos::deep_copy(other, 7.0);
+  for (int j = 0; j < 20; ++j) again.append(other);
+  const double* place = again.matrix().data();
+  again.restart();
+  EXPECT_EQ(again.count(), 0u);
+  EXPECT_EQ(again.appended(), 0u);
+  EXPECT_EQ(again.discarded_energy(), 0.0);
+  append_all(fresh);
+  append_all(again);
+  EXPECT_EQ(again.matrix().data(), place);
+  EXPECT_EQ(again.count(), fresh.count());
+  EXPECT_EQ(again.discarded_energy(), fresh.discarded_energy());
+  for (std::size_t k = 0; k < fresh.matrix().size(); ++k) {
+    ASSERT_EQ(again.matrix().data()[k], fresh.matrix().data()[k]) << k;
+  }
+}
+
 }  // namespace
 }  // namespace kiln
