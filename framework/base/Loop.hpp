@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -24,6 +25,28 @@ void loop(const std::string& label, LocalIndex count, const Body& body) {
   }
 #endif
   Kokkos::parallel_for(label, RangePolicy(0, count), body);
+}
+
+/// Σ body(i) for i = 0 … count − 1 in parallel, in the same order each time. On the serial execution space it runs right
+/// here in several partial sums side by side: in one, each addition waits for the one before, nine cycles a number.
+template <class Body>
+double sum(const std::string& label, LocalIndex count, const Body& body) {
+  double total = 0.0;
+#ifdef KOKKOS_ENABLE_SERIAL
+  if constexpr (std::is_same_v<ExecutionSpace, Kokkos::Serial>) {
+    // A tool hears of the kernel, and the bits of the sum stay the same.
+    std::uint64_t kernel = 0;
+    static const bool heard = Kokkos::Tools::profileLibraryLoaded();
+    if (heard) Kokkos::Tools::beginParallelReduce(label, 0, &kernel);
+#pragma omp simd reduction(+ : total)
+    for (LocalIndex i = 0; i < count; ++i) total += body(i);
+    if (heard) Kokkos::Tools::endParallelReduce(kernel);
+    return total;
+  }
+#endif
+  Kokkos::parallel_reduce(
+      label, RangePolicy(0, count), KOKKOS_LAMBDA(const LocalIndex i, double& part) { part += body(i); }, total);
+  return total;
 }
 
 /// Whether a and b, of equal lengths, hold the same numbers; zeros of different sign need not count as the same.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Loop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/method/Divergence.hpp"
@@ -27,26 +28,26 @@ Teuchos::TimeMonitor timed(const char* name) {
 /// r = α0 x − γ f + h; returns this rank's Σ r².
 double residual_squares(const StepResidual& step, const ConstVectorView& x, const ConstVectorView& f,
                         const VectorView& r) {
+  static const std::string label = "kiln::method::step_residual";
   const double alpha = step.alpha, gamma = step.gamma;
-  const ConstVectorView h = step.history;
-  double sum = 0.0;
-  Kokkos::parallel_reduce(
-      "kiln::method::step_residual", RangePolicy(0, static_cast<LocalIndex>(r.extent(0))),
-      KOKKOS_LAMBDA(const LocalIndex i, double& squares) {
-        const double value = alpha * x(i) - gamma * f(i) + h(i);
-        r(i) = value;
-        squares += value * value;
-      },
-      sum);
-  return sum;
+  const auto h = borrowed(step.history);
+  const auto u = borrowed(x);
+  const auto rate = borrowed(f);
+  const auto residual = borrowed(r);
+  return sum(
+      label, static_cast<LocalIndex>(r.extent(0)), KOKKOS_LAMBDA(const LocalIndex i) {
+        const double value = alpha * u(i) - gamma * rate(i) + h(i);
+        residual(i) = value;
+        return value * value;
+      });
 }
 
 double squares(const ConstVectorView& values) {
-  double sum = 0.0;
-  Kokkos::parallel_reduce(
-      "kiln::method::squares", RangePolicy(0, static_cast<LocalIndex>(values.extent(0))),
-      KOKKOS_LAMBDA(const LocalIndex i, double& total) { total += values(i) * values(i); }, sum);
-  return sum;
+  static const std::string label = "kiln::method::squares";
+  const auto all = borrowed(values);
+  return sum(
+      label, static_cast<LocalIndex>(values.extent(0)),
+      KOKKOS_LAMBDA(const LocalIndex i) { return all(i) * all(i); });
 }
 
 void add_scaled(const ConstVectorView& x, double scale, const ConstVectorView& direction, const VectorView& result) {
