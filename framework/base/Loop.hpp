@@ -27,8 +27,9 @@ void loop(const std::string& label, LocalIndex count, const Body& body) {
   Kokkos::parallel_for(label, RangePolicy(0, count), body);
 }
 
-/// Σ body(i) for i = 0 … count − 1 in parallel, in the same order each time. On the serial execution space it runs right
-/// here in several partial sums side by side: in one, each addition waits for the one before, nine cycles a number.
+/// Σ body(i) for i = 0 … count − 1 in parallel, in the same order each time. On the serial execution space it runs
+/// right here in several partial sums side by side: in one, each addition waits for the one before, nine cycles a
+/// number.
 template <class Body>
 double sum(const std::string& label, LocalIndex count, const Body& body) {
   double total = 0.0;

@@ -46,8 +46,7 @@ double squares(const ConstVectorView& values) {
   static const std::string label = "kiln::method::squares";
   const auto all = borrowed(values);
   return sum(
-      label, static_cast<LocalIndex>(values.extent(0)),
-      KOKKOS_LAMBDA(const LocalIndex i) { return all(i) * all(i); });
+      label, static_cast<LocalIndex>(values.extent(0)), KOKKOS_LAMBDA(const LocalIndex i) { return all(i) * all(i); });
 }
 
 void add_scaled(const ConstVectorView& x, double scale, const ConstVectorView& direction, const VectorView& result) {
