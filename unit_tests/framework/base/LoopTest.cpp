@@ -11,7 +11,8 @@ namespace {
 TEST(Sum, TakesEachIndexOnce) {
   // Around every vector length; powers of two show which one is missing or doubled.
   for (LocalIndex count = 0; count <= 50; ++count) {
-    const double found = sum("kiln::test::powers", count, [](LocalIndex i) { return std::ldexp(1.0, static_cast<int>(i)); });
+    const double found =
+        sum("kiln::test::powers", count, [](LocalIndex i) { return std::ldexp(1.0, static_cast<int>(i)); });
     EXPECT_EQ(found, std::ldexp(1.0, static_cast<int>(count)) - 1.0) << count;
   }
 }
