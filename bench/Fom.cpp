@@ -62,7 +62,7 @@ void arrangement(std::vector<Figure>& figures, const std::string& name, const He
                  const std::vector<Need>& needs) {
   PlainRate plain(model);
   const VectorView u = weld_state(model);
-  const VectorView f("f", model.rows()->getNodeNumElements());
+  const VectorView f("f", local_size(*model.rows()));
   plain.evaluate(u);
   model.rate(u, no_beam, f);
   require_same(name.c_str(), model, plain, f);
@@ -103,7 +103,7 @@ void sample_mesh(std::vector<Figure>& figures, const HeatModel& model, const Ben
   }
   const auto sample = model.sampled(rows);
   const VectorView u = weld_state(model);
-  const VectorView f("f", model.rows()->getNodeNumElements());
+  const VectorView f("f", local_size(*model.rows()));
   const VectorView sample_u = weld_state(*sample);
   const VectorView sample_f("f", rows.size());
   constexpr int repeats = 100;
@@ -157,7 +157,7 @@ std::vector<Figure> all_ranks() {
   const auto single = part.lattice(alone());
   const auto shared = part.lattice(everyone);
   const VectorView single_u = weld_state(*single);
-  const VectorView single_f("f", single->rows()->getNodeNumElements());
+  const VectorView single_f("f", local_size(*single->rows()));
   const Halo halo(*shared);
   Halo::State state(halo);
   const VectorView shared_u = weld_state(*shared);
@@ -214,7 +214,7 @@ std::vector<Figure> scale() {
   std::vector<std::function<void()>> evaluations;
   for (const auto& [name, part] : cases) {
     const std::shared_ptr<HeatModel> model = part.lattice(Tpetra::getDefaultComm());
-    const VectorView f("f", model->rows()->getNodeNumElements());
+    const VectorView f("f", local_size(*model->rows()));
     const int repeats = std::max(1, static_cast<int>(280000.0 / static_cast<double>(f.extent(0))));
     const auto pairs = static_cast<double>(model->domain().pairs.neighbours.extent(0));
     parts.push_back({name, model, weld_state(*model), f, pairs, repeats});
@@ -244,7 +244,7 @@ void count(const std::string& kernel, int repeats, const std::string& folder) {
   PlainRate plain(*model);
   const auto rows = sliced_rows(model->domain());
   const VectorView u = weld_state(*model);
-  const VectorView f("f", model->rows()->getNodeNumElements());
+  const VectorView f("f", local_size(*model->rows()));
   const ThermalStateView states("states", u.extent(0) + 1);
   for (std::size_t j = 0; j < u.extent(0); ++j) {
     states(j) = thermal_state(model->material(), u(j), model->domain().masses(j));

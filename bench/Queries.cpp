@@ -69,6 +69,7 @@ class Queries {
     Keep keep(method_->reader(places_), places_.size(), values);
     for (std::size_t point = 0; point < points.count(); ++point) {
       points.set(point, method_->parameters());
+      method_->forget();
       method_->initial(x_);
       scheme_->start(x_, 0.0);
       run_time_loop(*method_, *scheme_, x_, span_, {&keep});

@@ -58,12 +58,12 @@ class KilnCase:
         return self.online_in_turn([(self, reduction)], method, *changes, ranks=ranks)[0]
 
     @staticmethod
-    def online_in_turn(cases, method, *changes, ranks=2):
+    def online_in_turn(cases, method, *changes, ranks=2, rounds=ONLINE_RUNS):
         """Of each pair of case and reduction file what online() tells. They run in turn, so that a machine that is slower
         for a while is so for all."""
         times = [[] for _ in cases]
         runs = [None for _ in cases]
-        for _ in range(ONLINE_RUNS):
+        for _ in range(rounds):
             for number, (case, reduction) in enumerate(cases):
                 words = (f"method.type={method}", f"method.file={reduction}", *changes)
                 runs[number] = run = RunFolder(case.kiln("run", f"online-{number}", *words, ranks=ranks) / method)

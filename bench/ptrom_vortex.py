@@ -48,8 +48,10 @@ def scale(bench):
         reduction, training = case.train("training")
         cases.append((case, reduction))
         trainings.append(training)
+    # Runs of a few ms: it takes many of them to tell a tenth.
+    onlines = KilnCase.online_in_turn(cases, "ptrom", rounds=25)
     rows = []
-    for (_, reduction), full, training, online in zip(cases, fulls, trainings, KilnCase.online_in_turn(cases, "ptrom")):
+    for (_, reduction), full, training, online in zip(cases, fulls, trainings, onlines):
         row = {"particles": full.report["method"]["particles"], **measured(full, reduction, online)}
         row["training_in_full_order_runs"] = training / row["full_order_s"]
         row["median_spacings_moved"], row["most_spacings_moved"] = vortex_errors.spacings_moved(full)

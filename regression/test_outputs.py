@@ -3,6 +3,7 @@
 import json
 import re
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -67,6 +68,17 @@ class RunFilesTest(KilnTest):
             self.assertTrue(attributes[key], key)
         checked = self.kiln("check", SMALL, "--set", "output.directory=results")
         self.assertEqual(attributes["input"], checked.stdout)
+
+    def test_hashes_of_all_inputs(self):
+        before = json.loads((self.run_folder / "report.json").read_text())["inputs"]
+        self.assertEqual([entry["kind"] for entry in before], ["text"] * len(before))
+        self.assertTrue(all(re.fullmatch("[0-9a-f]{32}", entry["xxh3"]) for entry in before), before)
+        self.assertIn(Path(SMALL).name, [Path(entry["file"]).name for entry in before])
+        text = Path(before[0]["file"]).read_text() + "# one more line\n"
+        (self.folder / "changed.yaml").write_text(text)
+        self.assertEqual(self.kiln("run", "changed.yaml", "--quiet", "--set", "output.directory=changed").status, 0)
+        after = json.loads((self.folder / "changed/fom/report.json").read_text())["inputs"]
+        self.assertNotEqual(after[0]["xxh3"], before[0]["xxh3"])
 
     def test_the_input_kept_in_the_run_file_gives_the_same_run(self):
         with h5py.File(self.run_folder / "run.h5") as file:

@@ -118,7 +118,8 @@ class QueriesTest(KilnTest):
         for override, words in (
             ("queries.points={heat_source.powr: [1 W]}", ("no live parameter", "did you mean 'heat_source.power'?")),
             ("queries.points={heat_source.power: [1 m]}", ("'1 m' is a length", "a power in W")),
-            ("queries.points={heat_source.width: [50 um, 0 um]}", ("the beam's width is set to 0",)),
+            ("queries.points={heat_source.width: [50 um, 0 um]}", ("'0 um' is not above 0", "a length in m above 0")),
+            ("queries.points={heat_source.power: [1 W, -40 W]}", ("'-40 W' is below 0", "a power in W at least 0")),
             ("queries.file=points.csv", ("both points and file are given",)),
             ("time.newton.line_search=true", ("not offered to points that advance together", "queries.together: 1")),
         ):

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -111,6 +112,39 @@ class RestartTest(KilnTest):
 
     def test_ptrom(self):
         self.check("ptrom", (150,), ranks=2)
+
+    def test_a_reduction_learnt_anew(self):
+        self.provide_reduction("again")
+        self.solve("run", *self.overrides("gnat"), into="again")
+        self.solve("run", *self.overrides("gnat"), into="again", options=("--restart",))
+        # As many coordinates as before, but not the same ones.
+        self.solve("train", *CASE, END["gnat"], "reduction.sampling.samples=50", into="again")
+        words = [word for override in self.overrides("gnat") for word in ("--set", override)]
+        for ranks in (1, 2):
+            outcome = self.kiln("run", SMALL, *words, "--set", "output.directory=again", "--restart", "--quiet", ranks=ranks)
+            self.assertEqual((outcome.status, outcome.stdout), (2, ""), outcome.stderr)
+            self.assertIn("again/gnat/checkpoint.h5", outcome.stderr)
+            self.assertIn("the run began with reduction", outcome.stderr)
+
+    def test_data_changed_since(self):
+        shutil.copy(SMALL, self.folder / "own.yaml")
+        table = self.folder / "steel.csv"
+        shutil.copy(Path(SMALL).parent / "steel.csv", table)
+
+        def run(*options):
+            words = ("--set", "model.material={type: table, path: steel.csv}", "--set", "output.directory=own")
+            return self.kiln("run", "own.yaml", "--quiet", *words, *options)
+
+        self.assertEqual(run().status, 0)
+        self.assertEqual(run("--restart").status, 0)
+        *rows, last = table.read_text().splitlines()
+        cells = last.split(",")
+        cells[-1] = str(float(cells[-1]) + 1.0)
+        table.write_text("\n".join([*rows, ",".join(cells)]) + "\n")
+        outcome = run("--restart")
+        self.assertEqual(outcome.status, 2, outcome.stderr)
+        self.assertIn("is the checkpoint of another run", outcome.stderr)
+        self.assertIn("steel.csv", outcome.stderr)
 
     def test_killed_twice(self):
         undisturbed = self.solve("run", *self.overrides("fom"), into="undisturbed") / "fom"

@@ -23,7 +23,7 @@ class Checkpoint : public Observer {
 
   static std::filesystem::path file(const std::filesystem::path& folder) { return folder / "checkpoint.h5"; }
 
-  /// Takes x, the scheme's history and the method's solver state from the checkpoint in `context.folder`; returns its
+  /// Takes x, the scheme's history and the method's solver state from the checkpoint in `folder`; returns its
   /// step, which is at most `last_step`. Throws FileError for a missing or damaged file and for one of another run,
   /// naming the first line of `identity` that differs.
   static int restore(const std::filesystem::path& folder, const std::string& identity, Method& method,

@@ -12,6 +12,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/driver/Checkpoint.hpp"
+#include "framework/driver/InputHashes.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/driver/StopRequest.hpp"
@@ -38,14 +39,17 @@ using Comm = Teuchos::RCP<const Communicator>;
 /// Everything one run is made of, built from its input in the order in which the parts need each other.
 class Assembly {
  public:
-  Assembly(const Input& input, const std::filesystem::path& folder, const Comm& communicator, bool restart)
+  /// `data`: data_identity of the input.
+  Assembly(const Input& input, const std::string& data, const std::filesystem::path& folder, const Comm& communicator,
+           bool restart)
       : span_(TimeSpan::of(input.list())) {
     const Teuchos::ParameterList& list = input.list();
     method_ = Registry<Method>::create(list.sublist("method"), {list, communicator});
     scheme_ = Registry<TimeScheme>::create(list.sublist("time").sublist("scheme"), {*method_, span_.step});
     x_ = VectorView("kiln::run::unknown", local_size(*method_->coordinates()));
-    const std::string identity = fmt::format("model:\n{}time:\n{}method:\n{}", to_yaml(list.sublist("model")),
-                                             to_yaml(list.sublist("time")), to_yaml(list.sublist("method")));
+    const std::string identity =
+        fmt::format("model:\n{}time:\n{}method:\n{}data files:\n{}", to_yaml(list.sublist("model")),
+                    to_yaml(list.sublist("time")), to_yaml(list.sublist("method")), data);
     if (restart) {
       span_.first_step = Checkpoint::restore(folder, identity, *method_, *scheme_, x_, span_.last_step, communicator);
     } else {
@@ -100,8 +104,10 @@ class Assembly {
   std::vector<std::unique_ptr<Observer>> observers_;
 };
 
-/// The libraries whose code took part, if any.
-void report_plugins(RunReport& report) {
+/// On what a run was made, from which files, and the libraries whose code took part, if any. Collective.
+void report_origins(const nlohmann::json& hashes, RunReport& report, const Communicator& communicator) {
+  report.section("provenance") = provenance(communicator);
+  report.section("inputs") = hashes;
   for (const plugins::Loaded& plugin : plugins::loaded()) {
     report.section("plugins").push_back({{"name", plugin.file}, {"sha256", plugin.sha256}});
   }
@@ -212,7 +218,6 @@ std::unique_ptr<Trainer> make_trainer(const Input& input, bool quiet, const Comm
 
 /// Answers the points of the block `queries`.
 void answer_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {
-  const Timers timers("kiln");
   const Teuchos::ParameterList& list = input.list();
   if (options.restart) {
     throw InputError("queries", "a run that answers queries leaves no checkpoint", "kiln run without --restart");
@@ -235,7 +240,7 @@ void answer_timed(const Stopwatch& total, const Input& input, const CommandOptio
       {"status", diverged == 0 ? "complete" : fmt::format("{} of {} points diverged", diverged, points)},
       {"steps", answers.steps.back()},
       {"step_s", list.sublist("time").get<double>("step")}};
-  report.section("provenance") = provenance(*communicator);
+  report_origins(input_hashes(input, *communicator), report, *communicator);
   queries->report(report);
   const Seconds all = elapsed(total, *communicator);
   report.section("time") = {{"setup_wall_s", setup.wall},
@@ -256,9 +261,11 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   const Timers timers("kiln");
   const Teuchos::ParameterList& list = input.list();
   const RunFolder folder(run_folder(list), *communicator);
+  const nlohmann::json hashes = input_hashes(input, *communicator);
 
-  auto assembly =
-      located(input, [&] { return std::make_unique<Assembly>(input, folder.path(), communicator, options.restart); });
+  auto assembly = located(input, [&] {
+    return std::make_unique<Assembly>(input, data_identity(hashes), folder.path(), communicator, options.restart);
+  });
   const std::string type = list.sublist("method").get<std::string>("type");
   if (!options.quiet) {
     assembly->add(std::make_unique<ProgressObserver>(type, assembly->span().first_step, *communicator));
@@ -275,8 +282,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
            {"steps", assembly->span().last_step},
            {"first_step", assembly->span().first_step},
            {"step_s", assembly->span().step}};
-  report.section("provenance") = provenance(*communicator);
-  report_plugins(report);
+  report_origins(hashes, report, *communicator);
 
   std::exception_ptr failure;
   const Stopwatch loop;
@@ -324,8 +330,7 @@ void train_timed(const Stopwatch& total, const Input& input, const CommandOption
                            {"input", input.file()},
                            {"method", list.sublist("reduction").get<std::string>("type")},
                            {"status", "complete"}};
-  report.section("provenance") = provenance(*communicator);
-  report_plugins(report);
+  report_origins(input_hashes(input, *communicator), report, *communicator);
   located(input, [&] {
     trainer->train(reduction_file(list), report);
     return 0;
@@ -364,7 +369,7 @@ void build(const Input& input, bool trains, const Comm& communicator) {
     if (input.list().isSublist("queries")) {
       QueryRun(input.list(), communicator);
     } else {
-      Assembly(input, folder.path(), communicator, false);
+      Assembly(input, {}, folder.path(), communicator, false);
     }
     return 0;
   });

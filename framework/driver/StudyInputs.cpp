@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <set>
 
+#include "framework/base/Hash.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/input/Override.hpp"
-#include "framework/report/Hash.hpp"
 #include "framework/report/Provenance.hpp"
 
 namespace kiln {

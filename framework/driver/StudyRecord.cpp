@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "framework/base/Hash.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
-#include "framework/report/Hash.hpp"
 
 namespace kiln {
 namespace {

@@ -12,7 +12,7 @@ struct TimeSpan {
   double step;
   int first_step;
   int last_step;
-  int checkpoint_every = 0;       ///< steps between two checkpoints; the last step has one too; 0: none at all
+  int checkpoint_every = 0;       ///< steps between two checkpoints; 0: none at all
   double checkpoint_pause = 0.0;  ///< least wall time between two of them, in s
 
   /// From the input's blocks `time` (`step` and `end`) and `output.checkpoint`. Throws InputError if `end` is no

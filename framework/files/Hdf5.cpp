@@ -14,6 +14,7 @@
 #include "framework/files/Hdf5Vet.hpp"
 #include "framework/files/Reserve.hpp"
 #include "framework/files/Seal.hpp"
+#include "framework/files/Together.hpp"
 
 namespace kiln::hdf5 {
 namespace {
@@ -168,14 +169,13 @@ File File::read(const std::string& path, const Teuchos::RCP<const Communicator>&
     segments = read_seal(path, true);
     return segments.empty() ? vet(path) : std::nullopt;
   });
-  int sealed = segments.empty() ? 0 : 1;
-  Teuchos::broadcast(*communicator, 0, 1, &sealed);
+  const std::string known = broadcast(*communicator, segments.empty() ? std::string() : hdf5::fingerprint(segments));
   // Each rank reads by itself: reading needs no agreement, and many small readings then cost no communication.
   const Id access = access_properties(*communicator, false);
   Id id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   File file(root_of(path, communicator, false, std::move(id), "read"));
   OpenFile& opened = *file.node_->file;
-  opened.sealed = sealed == 1;
+  opened.fingerprint = known;
   opened.checked.resize(segments.size(), false);
   opened.seal = std::move(segments);
   return file;
@@ -195,10 +195,12 @@ File File::modify(const std::string& path, const Teuchos::RCP<const Communicator
 }
 
 void File::require_seal() const {
-  if (node_->file->sealed) return;
+  if (!node_->file->fingerprint.empty()) return;
   throw FileError(file(), "", "carries no seal: it was cut short, changed, or written by another version of Kiln",
                   "the file as this version of Kiln wrote it");
 }
+
+const std::string& File::fingerprint() const { return node_->file->fingerprint; }
 
 void File::flush() { node_->require(H5Fflush(node_->file->id, H5F_SCOPE_GLOBAL) >= 0, "", "written"); }
 

@@ -129,6 +129,8 @@ class File : public Group {
   static File modify(const std::string& path, const Teuchos::RCP<const Communicator>& communicator);
   /// Throws FileError unless the file was opened by read() and carries a seal.
   void require_seal() const;
+  /// Tells a sealed file that read() has opened from others (Seal.hpp); empty: it carries no seal.
+  const std::string& fingerprint() const;
   /// Hands everything written so far to the operating system. Throws FileError when the disk refuses; closing cannot.
   void flush();
   /// Errors call the open file by this name from now on.

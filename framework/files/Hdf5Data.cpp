@@ -168,7 +168,7 @@ Dataset open_dataset(const Node& node, const std::string& name, H5T_class_t type
 }
 
 void check_values(const Node& node, const Dataset& dataset, const std::string& name) {
-  if (!node.file->sealed) return;
+  if (node.file->fingerprint.empty()) return;
   const hsize_t length = H5Dget_storage_size(dataset.id);
   const haddr_t offset = H5Dget_offset(dataset.id);
   if (length < large_dataset || offset == HADDR_UNDEF) return;

@@ -46,7 +46,7 @@ struct OpenFile {
   bool parallel;  ///< opened through MPI-IO
   Id id;
   std::vector<Segment> seal = {};  ///< rank 0's; empty: none, or unknown
-  bool sealed = false;             ///< the same on every rank
+  std::string fingerprint = {};    ///< of the seal, the same on every rank; empty: none, or unknown
   std::vector<bool> checked = {};  ///< rank 0's: segments that were found intact
 };
 

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Hash.hpp"
 #include "framework/files/Hdf5Node.hpp"
 #include "framework/files/Together.hpp"
 
@@ -206,6 +207,10 @@ std::vector<Segment> read_seal(const std::string& path, bool check) {
     if (check && !segment.large) check_segment(path, segment, "");
   }
   return segments;
+}
+
+std::string fingerprint(const std::vector<Segment>& seal) {
+  return hash_of(bytes_of(seal, seal.empty() ? 0 : seal.back().offset + seal.back().length));
 }
 
 void check_segment(const std::string& path, const Segment& segment, const std::string& place) {

@@ -35,6 +35,9 @@ void seal(const std::string& path, const Communicator& communicator);
 /// `check` for any segment that is not large and differs from its hash. Not collective.
 std::vector<Segment> read_seal(const std::string& path, bool check);
 
+/// Tells sealed files apart: a hash of the seal's own hashes. Files of the same bytes have the same.
+std::string fingerprint(const std::vector<Segment>& seal);
+
 /// Throws FileError, naming `place`, unless the segment's bytes are those that were sealed. Not collective.
 void check_segment(const std::string& path, const Segment& segment, const std::string& place);
 

@@ -108,6 +108,7 @@ Input Input::read(const std::string& file, const std::vector<std::string>& overr
   input.list_ = checked.list;
   input.list_.setName("");
   input.locations_ = std::move(checked.locations);
+  input.text_files_ = files->text_files();
   input.data_files_ = std::move(checked.data_files);
   input.data_files_.insert(input.data_files_.end(), libraries.begin(), libraries.end());
   return input;

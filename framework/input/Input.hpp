@@ -30,6 +30,8 @@ class Input {
 
   const Teuchos::ParameterList& list() const { return list_; }
   const std::string& file() const { return file_; }
+  /// Absolute paths of the YAML files it was read from, each with the XXH3 hash (128 bits) of its text.
+  const std::vector<std::pair<std::string, std::string>>& text_files() const { return text_files_; }
   /// Absolute paths of the data files and the plugins the input names, and of the files promised.
   const std::vector<std::string>& data_files() const { return data_files_; }
   /// Where the entry stands, or its nearest enclosing block.
@@ -43,6 +45,7 @@ class Input {
   std::string file_;
   Teuchos::ParameterList list_;
   std::map<std::string, Location> locations_;
+  std::vector<std::pair<std::string, std::string>> text_files_;
   std::vector<std::string> data_files_;
 };
 

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "framework/base/Hash.hpp"
+
 namespace kiln {
 namespace {
 
@@ -96,6 +98,12 @@ const InputFiles::Contents& InputFiles::read(const std::string& path) {
   if (known != contents_.end()) return known->second;
   if (received_) throw_not_received(path);
   return contents_[path] = contents(path);
+}
+
+std::vector<std::pair<std::string, std::string>> InputFiles::text_files() const {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& [path, contents] : contents_) files.emplace_back(path, hash_of(contents.text));
+  return files;
 }
 
 std::vector<std::string> InputFiles::data_files() const {

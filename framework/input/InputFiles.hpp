@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kiln {
@@ -30,6 +31,8 @@ class InputFiles {
   const Contents& read(const std::string& path);
   /// A file that is not there yet but will be when it is wanted. `path` is absolute. Rank 0 alone.
   void promise(const std::string& path) { troubles_[path].clear(); }
+  /// All files that were read, absolute, each with the XXH3 hash (128 bits) of its text.
+  std::vector<std::pair<std::string, std::string>> text_files() const;
   /// All files that were asked for by trouble(), absolute.
   std::vector<std::string> data_files() const;
   /// Why a data file cannot be opened; empty: it can. Devices and pipes have no end one could count on, or no

@@ -10,16 +10,28 @@
 
 namespace kiln {
 
-void Parameters::add(std::string name, std::string unit, double* value) {
+std::string Parameter::trouble(double proposed) const {
+  if (!std::isfinite(proposed)) return "not finite";
+  if (allowed == Allowed::not_negative && proposed < 0.0) return "below 0";
+  if (allowed == Allowed::positive && proposed <= 0.0) return "not above 0";
+  return {};
+}
+
+const char* Parameter::range() const {
+  if (allowed == Allowed::any) return "";
+  return allowed == Allowed::positive ? " above 0" : " at least 0";
+}
+
+void Parameters::add(std::string name, std::string unit, double* value, Allowed allowed) {
   for (const Parameter& known : parameters_) {
     if (known.name == name) throw std::logic_error(fmt::format("model parameter '{}' is listed twice", name));
   }
-  parameters_.push_back({std::move(name), std::move(unit), value});
+  parameters_.push_back({std::move(name), std::move(unit), value, allowed});
 }
 
 void Parameters::add(std::string_view prefix, const Parameters& component) {
   for (const Parameter& parameter : component.parameters_) {
-    add(fmt::format("{}.{}", prefix, parameter.name), parameter.unit, parameter.value);
+    add(fmt::format("{}.{}", prefix, parameter.name), parameter.unit, parameter.value, parameter.allowed);
     parameters_.back().mirrors = parameter.mirrors;
   }
 }
@@ -52,9 +64,9 @@ double Parameters::get(std::string_view name) const { return *find(name).value; 
 
 void Parameters::set(std::string_view name, double value) {
   const Parameter& parameter = find(name);
-  if (!std::isfinite(value)) {
+  if (!parameter.trouble(value).empty()) {
     throw InputError("", fmt::format("parameter '{}' is set to {}", name, value),
-                     fmt::format("a finite number in {}", parameter.unit));
+                     fmt::format("a finite number in {}{}", parameter.unit, parameter.range()));
   }
   *parameter.value = value;
   for (double* mirror : parameter.mirrors) *mirror = value;

@@ -6,12 +6,21 @@
 
 namespace kiln {
 
+/// Which values a live parameter may take; what its key in the input allows.
+enum class Allowed { any, not_negative, positive };
+
 /// One live parameter µ of a model: the value the model reads at its next evaluation.
 struct Parameter {
-  std::string name;                   ///< path below `model` in the input, e.g. "heat_source.power"
-  std::string unit;                   ///< SI unit, "1" for a pure number
-  double* value;                      ///< owned by the component that lists it
+  std::string name;  ///< path below `model` in the input, e.g. "heat_source.power"
+  std::string unit;  ///< SI unit, "1" for a pure number
+  double* value;     ///< owned by the component that lists it
+  Allowed allowed = Allowed::any;
   std::vector<double*> mirrors = {};  ///< take every new value too
+
+  /// What is wrong with a value, e.g. "below 0"; empty: it is finite and allowed.
+  std::string trouble(double value) const;
+  /// What may follow "a power in W" in a message, e.g. " at least 0"; empty: nothing.
+  const char* range() const;
 };
 
 /// The named, typed, live parameters of a model (µ of Eq. 12). A new value takes effect at the next evaluation;
@@ -19,7 +28,7 @@ struct Parameter {
 class Parameters {
  public:
   /// `value` must live as long as this set. Throws std::logic_error for a name listed twice.
-  void add(std::string name, std::string unit, double* value);
+  void add(std::string name, std::string unit, double* value, Allowed allowed = Allowed::any);
   /// Adds the parameters of a component, each name behind `prefix` and a dot.
   void add(std::string_view prefix, const Parameters& component);
   /// Binds parameters of the same names, those of another model of the same physics: a value set here is set there too.
@@ -27,7 +36,7 @@ class Parameters {
   void mirror(const Parameters& other);
   /// Throws InputError that lists the known names for an unknown one.
   double get(std::string_view name) const;
-  /// Throws InputError for an unknown name or a value that is not finite.
+  /// Throws InputError for an unknown name and for a value that is not finite or not allowed.
   void set(std::string_view name, double value);
   const std::vector<Parameter>& list() const { return parameters_; }
 

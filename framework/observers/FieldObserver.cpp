@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "framework/base/Error.hpp"
+#include "framework/model/DegreesOfFreedom.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/RunReport.hpp"
@@ -55,11 +56,10 @@ FieldObserver::FieldObserver(const Teuchos::ParameterList& list, const Context& 
 
 void FieldObserver::begin() {
   const Method& method = context_.method;
-  const std::size_t states = method.particles()->getGlobalNumElements() * method.fields().size();
-  const std::size_t unknowns = method.coordinates()->getGlobalNumElements();
+  const auto states = degree_of_freedom_map(method.particles(), static_cast<int>(method.fields().size()));
   RunFile::Contents contents{method.fields(), steps_, attributes_of(context_)};
   // Where the unknown is not the state itself, it is what the whole field can be computed from.
-  if (unknowns != states) contents.coordinates = unknowns;
+  if (!method.coordinates()->isSameAs(*states)) contents.coordinates = method.coordinates()->getGlobalNumElements();
   file_ = std::make_unique<RunFile>(context_.folder, *method.particles(), method.positions(), std::move(contents),
                                     context_.first_step, context_.communicator);
 }

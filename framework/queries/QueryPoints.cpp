@@ -33,9 +33,10 @@ Problem unknown(const std::string& path, const std::string& name, const Paramete
           nearest(name, names)};
 }
 
-std::string quantity_in(const std::string& unit) {
-  return unit == "1" ? "a number without a unit"
-                     : fmt::format("{} in {}", with_article(parse_unit(unit).dimension), unit);
+std::string quantity_of(const Parameter& parameter) {
+  if (parameter.unit == "1") return fmt::format("a number without a unit{}", parameter.range());
+  return fmt::format("{} in {}{}", with_article(parse_unit(parameter.unit).dimension), parameter.unit,
+                     parameter.range());
 }
 
 /// One value in SI units; adds what is wrong with it.
@@ -44,11 +45,12 @@ double value_in(const std::string& text, const Parameter& parameter, const std::
   try {
     const Quantity quantity = parse_quantity(text);
     const Dimension expected = parse_unit(parameter.unit).dimension;
-    if (!quantity.has_unit || quantity.dimension == expected) return quantity.value;
-    problems.push_back(
-        {path, fmt::format("'{}' is {}", text, with_article(quantity.dimension)), quantity_in(parameter.unit), {}});
+    const bool fits = !quantity.has_unit || quantity.dimension == expected;
+    const std::string trouble = fits ? parameter.trouble(quantity.value) : with_article(quantity.dimension);
+    if (trouble.empty()) return quantity.value;
+    problems.push_back({path, fmt::format("'{}' is {}", text, trouble), quantity_of(parameter), {}});
   } catch (const InputError& error) {
-    problems.push_back({path, error.problems().front().found, quantity_in(parameter.unit), {}});
+    problems.push_back({path, error.problems().front().found, quantity_of(parameter), {}});
   }
   return 0.0;
 }
@@ -173,12 +175,12 @@ Axes tabulated(const std::string& file, const Parameters& parameters) {
       try {
         unit = parse_unit(*unit_text);
       } catch (const InputError& error) {
-        throw FileError(file, place, error.problems().front().found, quantity_in(parameter->unit));
+        throw FileError(file, place, error.problems().front().found, quantity_of(*parameter));
       }
     }
     if (unit.dimension != parse_unit(parameter->unit).dimension) {
       throw FileError(file, place, fmt::format("{} [{}] is {}", name, *unit_text, with_article(unit.dimension)),
-                      quantity_in(parameter->unit));
+                      quantity_of(*parameter));
     }
     axes.names.push_back(name);
     std::vector<double>& values = axes.values.emplace_back();
@@ -186,11 +188,14 @@ Axes tabulated(const std::string& file, const Parameters& parameters) {
       const double value = table.rows[row][column];
       // Through the text, so that a power of ten does not round twice.
       const std::string text = unit_text ? fmt::format("{} {}", value, *unit_text) : fmt::format("{}", value);
+      const std::string at = fmt::format("point {}, {}", row, name);
       try {
         values.push_back(parse_quantity(text).value);
       } catch (const InputError& error) {
-        throw FileError(file, fmt::format("point {}, {}", row, name), error.problems().front().found,
-                        "a finite number");
+        throw FileError(file, at, error.problems().front().found, "a finite number");
+      }
+      if (const std::string trouble = parameter->trouble(values.back()); !trouble.empty()) {
+        throw FileError(file, at, fmt::format("'{}' is {}", text, trouble), quantity_of(*parameter));
       }
     }
   }

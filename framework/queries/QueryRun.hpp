@@ -26,8 +26,6 @@ class QueryRun {
   const QueryAnswers& answer();
   /// Adds points, divergences and sums over all points. Collective.
   void report(RunReport& report) const;
-  /// Points that advance together; 1: each has a run of its own.
-  std::size_t together() const { return together_; }
   /// How many of all points diverged. Collective.
   std::size_t diverged() const;
 
@@ -43,9 +41,9 @@ class QueryRun {
   int every_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<TimeScheme> scheme_;
-  Method::Reader reader_;           ///< of points one after the other
-  std::vector<LocalIndex> places_;  ///< of the probes
-  std::size_t together_ = 1;
+  Method::Reader reader_;              ///< of points one after the other
+  std::vector<LocalIndex> places_;     ///< of the probes
+  std::size_t together_ = 1;           ///< points that advance together; 1: each has a run of its own
   std::unique_ptr<PointBlock> block_;  ///< of points that advance together; serves one block of points after the other
   std::size_t block_size_ = 0;
   QueryAnswers answers_;

@@ -6,7 +6,7 @@ namespace kiln {
 namespace {
 
 std::vector<GlobalIndex> ids_of(const Map& map) {
-  std::vector<GlobalIndex> result(map.getNodeNumElements());
+  std::vector<GlobalIndex> result(static_cast<std::size_t>(local_size(map)));
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = map.getGlobalElement(static_cast<LocalIndex>(i));
   return result;
 }

@@ -36,8 +36,7 @@ class GaussianBeam final : public HeatSource {
   }
 
   GaussianBeam(const Teuchos::ParameterList& list, const Context&)
-      : path_(list.name()),
-        power_(list.get<double>("power")),
+      : power_(list.get<double>("power")),
         width_(list.get<double>("width")),
         printed_(list.isParameter("normalisation") && list.get<std::string>("normalisation") == "printed") {
     const auto start = list.get<Teuchos::Array<double>>("start");
@@ -46,8 +45,8 @@ class GaussianBeam final : public HeatSource {
       start_[axis] = start[axis];
       velocity_[axis] = velocity[axis];
     }
-    parameters_.add("power", "W", &power_);
-    parameters_.add("width", "m", &width_);
+    parameters_.add("power", "W", &power_, Allowed::not_negative);
+    parameters_.add("width", "m", &width_, Allowed::positive);
     parameters_.add("velocity.x", "m/s", &velocity_[0]);
     parameters_.add("velocity.y", "m/s", &velocity_[1]);
     parameters_.add("start.x", "m", &start_[0]);
@@ -100,13 +99,9 @@ class GaussianBeam final : public HeatSource {
     double exponent;  ///< factor of r², in 1/m²
   };
   Shape shape() const {
-    if (!(width_ > 0.0)) {
-      throw InputError(path_ + ".width", fmt::format("the beam's width is set to {}", width_), "a width in m above 0");
-    }
     return {power_ / (2.0 * pi * width_ * width_), -1.0 / (2.0 * (printed_ ? pi : 1.0) * width_ * width_)};
   }
 
-  std::string path_;
   double power_;
   double width_;
   double start_[2];

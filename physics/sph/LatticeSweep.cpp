@@ -128,7 +128,8 @@ class LatticeSweep final : public PairLayout {
     return (lattice_.vectors.span() + lattice_.weights.span()) * sizeof(double) +
            (lattice_.blocks.span() + lattice_.rows.span() + lattice_.filled.span() + lattice_.sources.span() +
             lattice_.distances.span()) *
-               sizeof(LocalIndex);
+               sizeof(LocalIndex) +
+           (own_images_ ? own_images_->bytes() : 0);
   }
   void sum(PairQuantity quantity, ConstThermalStateView states, VectorView sums) const override {
     // A particle's own image has its temperature always: nothing flows, but the stencil would count a conductance.

@@ -152,22 +152,14 @@ class CoreKernel : public VortexKernelOf<Law> {
     return specification;
   }
 
-  CoreKernel(const Teuchos::ParameterList& list, const NoContext&)
-      : path_(list.name()), core_radius_(list.get<double>("core_radius")) {
-    this->parameters_.add("core_radius", "m", &core_radius_);
+  CoreKernel(const Teuchos::ParameterList& list, const NoContext&) : core_radius_(list.get<double>("core_radius")) {
+    this->parameters_.add("core_radius", "m", &core_radius_, Allowed::positive);
   }
 
  protected:
-  Law law() const override {
-    if (!(core_radius_ > 0.0)) {
-      throw InputError(path_ + ".core_radius", fmt::format("the core radius is set to {}", core_radius_),
-                       "a radius in m above 0");
-    }
-    return Law(core_radius_);
-  }
+  Law law() const override { return Law(core_radius_); }
 
  private:
-  std::string path_;
   double core_radius_;
 };
 

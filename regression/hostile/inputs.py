@@ -16,7 +16,11 @@ ROOT = HERE.parents[1]
 SEED = 20220501
 
 # What is broken → the command that meets it. Files that others include are met through one of these.
-FOLDERS = {"nrl-2022": ROOT / "inputs" / "nrl-2022", "cases": ROOT / "regression" / "cases"}
+FOLDERS = {
+    "nrl-2022": ROOT / "inputs" / "nrl-2022",
+    "vortex": ROOT / "inputs" / "vortex",
+    "cases": ROOT / "regression" / "cases",
+}
 THROUGH = {
     "nrl-2022/part.yaml": "nrl-2022/experiment-1.yaml",
     "nrl-2022/kiln.yaml": "nrl-2022/experiment-1.yaml",
@@ -163,7 +167,7 @@ def leaf_cases(file, arguments, text):
             yield case(f"{'.'.join(path)}: doubled key", doubled, rf"{here}:{first + 2}:\d+: .*duplicate key")
         if ".".join(path) in REQUIRED and "include" not in text.split("model:")[0]:
             without = "".join(lines[:first] + lines[last:])
-            yield case(f"{'.'.join(path)}: missing", without, r"\.yaml(:\d+:\d+)?: .*missing")
+            yield case(f"{'.'.join(path)}: missing", without, r"\.yaml(:\d+:\d+)?: .*(missing|is left out)")
 
 
 def texts(text, chance):

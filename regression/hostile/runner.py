@@ -22,6 +22,7 @@ CPU_SECONDS = 5.0 * SLOWER
 WALL_SECONDS = 30.0 * SLOWER
 MEMORY_BYTES = (1 << 30) * SLOWER  # sanitizers take memory, too
 LONGEST_MESSAGE = 60  # lines
+PROGRESS_SECONDS = 30.0  # between two lines of progress
 
 CRASH = re.compile(
     r"terminate called|what\(\)|Aborted|[Bb]acktrace|Segmentation|Process received signal|did not foresee|"
@@ -151,13 +152,19 @@ def try_case(kiln, case, shared):
 def try_all(kiln, cases, shared, jobs=2, out=sys.stdout, keep=None):
     """Runs all cases; prints those that end badly and a line of counts. `keep`: where the broken files of these go."""
     totals = Totals()
-    start = time.monotonic()
+    start = told = time.monotonic()
     names = [case.name for case in cases]
     doubled = {name for name in names if names.count(name) > 1}
     if doubled:
         raise ValueError(f"cases of the same name: {sorted(doubled)}")
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for verdict in pool.map(lambda case: try_case(kiln, case, shared), cases):
+        verdicts = pool.map(lambda case: try_case(kiln, case, shared), cases)
+        for number, verdict in enumerate(verdicts, start=1):
+            if time.monotonic() - told > PROGRESS_SECONDS:
+                told = time.monotonic()
+                left = (told - start) / number * (len(cases) - number)
+                print(f"{number} of {len(cases)} tried, {len(totals.failures)} ended badly, about {left / 60:.0f} min left",
+                      file=sys.stderr, flush=True)  # fmt: skip
             totals.tried += verdict.case.counted
             totals.crashes += verdict.crashed
             totals.hangs += verdict.hung

@@ -14,7 +14,7 @@ Specification AmongSamples::specification() {
   s.real("ridge",
          "how strongly the fit of weights holds to small ones: more is steadier away from the training, less is closer "
          "to it")
-      .above(0)
+      .at_least(1e-6)
       .defaults_to(0.005);
   return s;
 }

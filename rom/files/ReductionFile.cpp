@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/Folders.hpp"
 #include "framework/files/Together.hpp"
 #include "rom/files/ReductionIdentity.hpp"
 
@@ -52,7 +53,7 @@ MatrixView finite_rows(const hdf5::Group& group, const std::string& name, const 
 std::filesystem::path ReductionFile::path(const Teuchos::ParameterList& input) {
   const Teuchos::ParameterList& method = input.sublist("method");
   if (method.isParameter("file")) return method.get<std::string>("file");
-  return std::filesystem::path(input.sublist("output").get<std::string>("directory")) / "reduction.h5";
+  return reduction_file(input);
 }
 
 ReductionFile::ReductionFile(const Teuchos::ParameterList& input, const Teuchos::RCP<const Communicator>& communicator)

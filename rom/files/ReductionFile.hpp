@@ -39,6 +39,8 @@ class ReductionFile {
   void require_time(const Teuchos::ParameterList& input) const;
 
   const hdf5::Group& root() const { return file_; }
+  /// Tells this reduction from one that was learnt anew.
+  const std::string& fingerprint() const { return file_.fingerprint(); }
   int components() const { return components_; }
   long long particles() const { return particles_; }
   /// In the order of time; their coordinates lie one after the other.

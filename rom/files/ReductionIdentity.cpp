@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Hash.hpp"
 #include "framework/input/Input.hpp"
-#include "framework/report/Hash.hpp"
 #include "rom/files/YamlDifference.hpp"
 
 namespace kiln::reduction_identity {

@@ -55,7 +55,9 @@ PetrovGalerkin::Parts full_size_parts(const Method::Context& context,
       Registry<Model>::create(context.input.sublist("model"), Model::Context{context.communicator});
   reduction.require_size(*model->rows(), model->fields().size());
   const ReductionFile::Rows rows = reduction.basis(*model->sources());
-  return full_size_parts(model, reduction.windows(), rows.reference, rows.modes, test_basis);
+  PetrovGalerkin::Parts parts = full_size_parts(model, reduction.windows(), rows.reference, rows.modes, test_basis);
+  parts.reduction = reduction.fingerprint();
+  return parts;
 }
 
 }  // namespace kiln

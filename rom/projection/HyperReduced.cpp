@@ -91,6 +91,7 @@ HyperReduced::Made HyperReduced::made_of(const Opened& opened, const Meshes& mes
   Made made;
   made.parts.particles = dealt(opened.held, opened.context.communicator);
   made.parts.positions = positions_at(*made.parts.particles, opened.held);
+  made.parts.reduction = reduction.fingerprint();
   const ReductionFile::Rows held =
       rows_at(*made.parts.particles, {&opened.held}, reduction.coordinates(), opened.name());
   std::shared_ptr<const TrialSpace> held_before;

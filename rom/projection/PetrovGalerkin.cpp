@@ -1,5 +1,7 @@
 #include "rom/projection/PetrovGalerkin.hpp"
 
+#include <fmt/format.h>
+
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -16,7 +18,10 @@ constexpr double round_off = 1e-9;
 }  // namespace
 
 PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings, Projection::Factors factors)
-    : particles_(std::move(parts.particles)), positions_(parts.positions), settings_(settings) {
+    : particles_(std::move(parts.particles)),
+      positions_(parts.positions),
+      settings_(settings),
+      reduction_(std::move(parts.reduction)) {
   for (Window& window : parts.windows) {
     windows_.push_back({window.end, std::make_unique<Projection>(std::move(window.projection), settings, factors),
                         std::move(window.held)});
@@ -65,11 +70,17 @@ Method::Reader PetrovGalerkin::reader(const std::vector<LocalIndex>& places) con
 }
 
 void PetrovGalerkin::save(hdf5::Group& group) const {
+  group.attribute("reduction", reduction_);
   group.attribute("window", static_cast<long long>(current_));
   projection().save(group);
 }
 
 void PetrovGalerkin::restore(const hdf5::Group& group) {
+  if (const std::string reduction = group.text("reduction"); reduction != reduction_) {
+    throw FileError(group.file(), group.path() + ", attribute reduction",
+                    fmt::format("the run began with reduction {}", reduction),
+                    fmt::format("{}, the one that is there now: start anew, without --restart", reduction_));
+  }
   const long long window = group.integer("window");
   if (window < 0 || window >= static_cast<long long>(windows_.size())) {
     throw FileError(group.file(), group.path() + ", attribute window", std::to_string(window),
@@ -88,6 +99,7 @@ void PetrovGalerkin::report(nlohmann::json& section) const {
     linearisations += window.projection->linearisations();
     condition = std::min(condition, window.projection->reciprocal_condition());
   }
+  if (!reduction_.empty()) section["reduction_seal"] = reduction_;
   section["time_windows"] = windows_.size();
   section["basis_rank"] = largest;
   section["coordinates"] = coordinates_->getGlobalNumElements();

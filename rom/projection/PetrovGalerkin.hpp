@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "framework/method/Method.hpp"
@@ -27,14 +28,16 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
     /// The particles whose state the method tells, each on one rank.
     Teuchos::RCP<const Map> particles;
     ConstPositionView positions;
+    /// Tells the reduction from one learnt anew (hdf5::File::fingerprint); empty: it comes from no file.
+    std::string reduction;
   };
 
   PetrovGalerkin(Parts parts, const NewtonSettings& settings, Projection::Factors factors = Projection::Factors::kept);
 
   Teuchos::RCP<const Map> coordinates() const override { return coordinates_; }
   LocalIndex row_size() const override { return projection().row_size(); }
-  /// As Projection::initial of the first window.
   void forget() override;
+  /// As Projection::initial of the first window.
   void initial(VectorView x) const override { windows_.front().projection->initial(x); }
   bool begin_step(double time) override;
 
@@ -51,6 +54,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   Parameters& parameters() override { return parameters_; }
 
   void save(hdf5::Group& group) const override;
+  /// Throws FileError for the state of a run on another reduction too: its coordinates are not this one's.
   void restore(const hdf5::Group& group) override;
   void report(nlohmann::json& section) const override;
 
@@ -81,6 +85,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   NewtonSettings settings_;
   Teuchos::RCP<const Map> coordinates_;
   Parameters parameters_;
+  std::string reduction_;
 };
 
 }  // namespace kiln

@@ -1,9 +1,13 @@
 #include "rom/training/FitWeights.hpp"
 
+#include <fmt/format.h>
+
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "framework/base/Error.hpp"
 #include "framework/model/Model.hpp"
 #include "rom/clustering/Points.hpp"
 #include "rom/files/ReductionFile.hpp"
@@ -66,7 +70,10 @@ VectorView coefficients(const Contributions& brought, const std::vector<double>&
     result(a) = product(brought[a], wanted);
   }
   dense::LuFactors factors;
-  factors.factor(normal);
+  if (!(factors.factor(normal) > std::numeric_limits<double>::epsilon())) {
+    throw InputError("reduction.clustering.ridge",
+                     fmt::format("{:g} does not tell sources apart that bring the same", ridge), "a larger ridge");
+  }
   factors.solve(result);
   return result;
 }

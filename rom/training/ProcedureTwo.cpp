@@ -101,7 +101,7 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
       basis_settings_(block.sublist("basis")),
       residual_settings_(block.sublist("residual_basis")),
       windows_(WindowSettings::of(block.isSublist("windows") ? &block.sublist("windows") : nullptr)),
-      every_(block.sublist("snapshots").get<int>("every")) {
+      every_(std::min(block.sublist("snapshots").get<int>("every"), span_.last_step)) {
   // In one window a rank too high is a mistake; of several, some may hold less.
   basis_settings_.rank_is_cap = residual_settings_.rank_is_cap = windows_.count != 1;
 }
@@ -136,7 +136,7 @@ std::vector<int> ProcedureTwo::window_ends(double error) const {
     const int count = std::min(*windows_.count, snapshots);
     for (int w = 1; w <= count; ++w) ends.push_back(static_cast<int>(static_cast<long long>(snapshots) * w / count));
   } else {
-    const int length = std::max(1, (*windows_.steps + every_ - 1) / every_);
+    const int length = std::max(1, (std::min(*windows_.steps, span_.last_step) + every_ - 1) / every_);
     for (int end = length; end < snapshots; end += length) ends.push_back(end);
     ends.push_back(snapshots);
   }
@@ -149,7 +149,8 @@ std::vector<Pod> ProcedureTwo::window_bases(const std::vector<int>& ends, RunRep
   facts = nlohmann::json::array();
   std::vector<Pod> bases;
   const Snapshots& snapshots = full_order_->snapshots();
-  if (ends.size() == 1) {
+  // The TSQR overwrites what it factors, and a further attempt would factor it again.
+  if (ends.size() == 1 && !windows_.error) {
     bases.push_back(pod(snapshots, basis_settings_, *communicator_));
     facts.push_back(facts_of(bases.back()));
     facts.back()["energy_discarded"] = snapshots.discarded_energy();

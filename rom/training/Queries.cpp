@@ -1,10 +1,10 @@
 #include "rom/training/Queries.hpp"
 
 #include <Teuchos_Array.hpp>
-#include <Teuchos_CommHelpers.hpp>
-#include <Tpetra_Map.hpp>
 #include <algorithm>
-#include <limits>
+#include <utility>
+
+#include "framework/observers/NearestParticle.hpp"
 
 namespace kiln {
 namespace {
@@ -30,31 +30,12 @@ std::vector<std::array<double, 3>> queried_positions(const Teuchos::ParameterLis
 }
 
 std::vector<GlobalIndex> nearest_particles(const Model& model, const std::vector<std::array<double, 3>>& positions) {
-  const Teuchos::RCP<const Map> rows = model.rows();
-  const ConstPositionView particles = model.positions();
-  const std::size_t local = rows->getMyGlobalIndices().extent(0), count = positions.size();
-  const auto distance = [&](std::size_t particle, std::size_t position) {
-    double sum = 0.0;
-    for (int d = 0; d < 3; ++d) {
-      const double difference = particles(particle, d) - positions[position][d];
-      sum += difference * difference;
-    }
-    return sum;
-  };
-  std::vector<double> mine(count, std::numeric_limits<double>::infinity()), least(count);
-  for (std::size_t q = 0; q < count; ++q) {
-    for (std::size_t i = 0; i < local; ++i) mine[q] = std::min(mine[q], distance(i, q));
+  const ConstPositionView rows =
+      Kokkos::subview(model.positions(), std::make_pair(LocalIndex(0), local_size(*model.rows())), Kokkos::ALL);
+  std::vector<GlobalIndex> ids;
+  for (const std::array<double, 3>& position : positions) {
+    ids.push_back(nearest_particle(*model.rows(), rows, position).id);
   }
-  Teuchos::reduceAll(*rows->getComm(), Teuchos::REDUCE_MIN, static_cast<int>(count), mine.data(), least.data());
-  std::vector<GlobalIndex> candidates(count, std::numeric_limits<GlobalIndex>::max()), ids(count);
-  for (std::size_t q = 0; q < count; ++q) {
-    for (std::size_t i = 0; i < local && mine[q] == least[q]; ++i) {
-      if (distance(i, q) == least[q]) {
-        candidates[q] = std::min(candidates[q], rows->getGlobalElement(static_cast<LocalIndex>(i)));
-      }
-    }
-  }
-  Teuchos::reduceAll(*rows->getComm(), Teuchos::REDUCE_MIN, static_cast<int>(count), candidates.data(), ids.data());
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;

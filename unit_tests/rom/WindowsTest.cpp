@@ -300,6 +300,26 @@ TEST(WindowedGnat, TakesNewValuesOfLiveParametersInEveryWindow) {
   EXPECT_LT(largest_difference(march(*method, values), from_the_input), 1e-14);
 }
 
+/// What a further attempt learns from must be what the first one saw, which was one window.
+TEST(WindowTraining, CutsOneWindowByTsqrAsByGram) {
+  const TestFolder folder;
+  Case values = training_case(folder.path().string());
+  values.residual_rank = 12;
+  values.samples = 30;
+  values.window_error = 2e-2;
+  std::vector<nlohmann::json> bases;
+  for (const char* algorithm : {"gram", "tsqr"}) {
+    values.algorithm = algorithm;
+    RunReport report = train(values, world());
+    bases.push_back(report.section("training")["basis"]);
+  }
+  ASSERT_EQ(bases[0].size(), bases[1].size());
+  for (std::size_t w = 0; w < bases[0].size(); ++w) {
+    EXPECT_EQ(bases[0][w]["rank"], bases[1][w]["rank"]);
+    EXPECT_NEAR(bases[0][w]["energy"], bases[1][w]["energy"], 1e-9) << w;
+  }
+}
+
 /// Random walks: every window's increments have a projection error that POD itself confirms.
 TEST(WindowCosts, AreThoseOfAPodOfTheIncrements) {
   constexpr int rows = 40, count = 30;

@@ -12,7 +12,8 @@ namespace {
 class QueryPoints : public testing::Test {
  protected:
   QueryPoints() {
-    parameters_.add("beam.power", "W", &power_);
+    parameters_.add("beam.power", "W", &power_, Allowed::not_negative);
+    parameters_.add("beam.width", "m", &width_, Allowed::positive);
     parameters_.add("beam.velocity.x", "m/s", &velocity_);
     parameters_.add("share", "1", &share_);
     list_.set("grid", false).set("together", 16);
@@ -45,7 +46,7 @@ class QueryPoints : public testing::Test {
   }
 
   TestFolder folder_;
-  double power_ = 1.0, velocity_ = 2.0, share_ = 3.0;
+  double power_ = 1.0, width_ = 4.0, velocity_ = 2.0, share_ = 3.0;
   Parameters parameters_;
   Teuchos::ParameterList list_;
 };
@@ -80,13 +81,25 @@ TEST_F(QueryPoints, TellAllMistakesOfListsAtOnce) {
   const std::vector<Problem> found = problems();
   ASSERT_EQ(found.size(), 6u);
   EXPECT_EQ(found[0].found, "'40 m' is a length");
-  EXPECT_EQ(found[0].expected, "a power in W");
+  EXPECT_EQ(found[0].expected, "a power in W at least 0");
   EXPECT_EQ(found[1].found, "'nan' is not finite");
   EXPECT_EQ(found[2].path, "queries.points.beam.powr");
   EXPECT_EQ(found[2].suggestion, "beam.power");
   EXPECT_EQ(found[3].found, "lists 2 values");
   EXPECT_EQ(found[4].found, "an empty list is given");
   EXPECT_EQ(found[5].found, "lists 0 values");
+}
+
+TEST_F(QueryPoints, TakeNoValueThatTheInputWouldRefuse) {
+  points({{"beam.power", {"0 W", "-1 W"}}, {"beam.width", {"0 m", "1 um"}}});
+  const std::vector<Problem> found = problems();
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].found, "'-1 W' is below 0");
+  EXPECT_EQ(found[0].expected, "a power in W at least 0");
+  EXPECT_EQ(found[1].found, "'0 m' is not above 0");
+  EXPECT_EQ(found[1].expected, "a length in m above 0");
+  EXPECT_NE(table_error("beam.width [um]\n1\n0\n").find("point 1, beam.width: '0 um' is not above 0"),
+            std::string::npos);
 }
 
 TEST_F(QueryPoints, TellWhatIsWrongWithATable) {

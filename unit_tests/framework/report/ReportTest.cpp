@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "framework/base/Error.hpp"
-#include "framework/report/Hash.hpp"
+#include "framework/base/Hash.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
 #include "framework/report/Sha256.hpp"

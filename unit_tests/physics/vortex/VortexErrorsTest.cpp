@@ -54,12 +54,12 @@ TEST(VortexErrors, ValuesThatAreNotFinite) {
 TEST(VortexErrors, CoreRadiusThatIsSetToNothing) {
   const auto model = VortexCase().model();
   for (const double radius : {0.0, -0.1}) {
-    model->parameters().set("kernel.core_radius", radius);
     try {
-      rate_of(*model, initial_state_of(*model));
+      model->parameters().set("kernel.core_radius", radius);
       ADD_FAILURE() << nothing;
     } catch (const InputError& error) {
-      expect_in("model.kernel.core_radius: the core radius is set to", error.what());
+      expect_in("parameter 'kernel.core_radius' is set to", error.what());
+      expect_in("expected a finite number in m above 0", error.what());
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "framework/report/Hash.hpp"
+#include "framework/base/Hash.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>

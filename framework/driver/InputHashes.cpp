@@ -1,0 +1,56 @@
+#include "framework/driver/InputHashes.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "framework/base/Error.hpp"
+#include "framework/base/Hash.hpp"
+#include "framework/files/Seal.hpp"
+#include "framework/files/Together.hpp"
+
+namespace kiln {
+namespace {
+
+constexpr const char* kind = "kind";
+constexpr const char* data = "data";
+
+nlohmann::json hashed(const std::string& file) {
+  nlohmann::json entry = {{"file", file}, {kind, data}};
+  try {
+    const std::vector<hdf5::Segment> seal = hdf5::read_seal(file, false);
+    if (seal.empty()) {
+      entry["xxh3"] = hash_of_file(file);
+    } else {
+      entry["seal"] = hdf5::fingerprint(seal);
+    }
+  } catch (const FileError&) {
+    entry["xxh3"] = "unreadable";
+  }
+  return entry;
+}
+
+}  // namespace
+
+nlohmann::json input_hashes(const Input& input, const Communicator& communicator) {
+  std::string text;
+  if (communicator.getRank() == 0) {
+    nlohmann::json hashes = nlohmann::json::array();
+    for (const auto& [file, hash] : input.text_files()) hashes.push_back({{"file", file}, {kind, "text"}, {"xxh3", hash}});
+    for (const std::string& file : input.data_files()) hashes.push_back(hashed(file));
+    text = hashes.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+  return nlohmann::json::parse(broadcast(communicator, text));
+}
+
+std::string data_identity(const nlohmann::json& hashes) {
+  std::string identity;
+  for (const nlohmann::json& entry : hashes) {
+    if (entry[kind] != data) continue;
+    const std::string name = std::filesystem::path(entry["file"].get<std::string>()).filename().string();
+    identity += fmt::format("  {}: {}\n", name, entry[entry.contains("seal") ? "seal" : "xxh3"].get<std::string>());
+  }
+  return identity;
+}
+
+}  // namespace kiln
