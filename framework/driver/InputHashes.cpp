@@ -36,7 +36,8 @@ nlohmann::json input_hashes(const Input& input, const Communicator& communicator
   std::string text;
   if (communicator.getRank() == 0) {
     nlohmann::json hashes = nlohmann::json::array();
-    for (const auto& [file, hash] : input.text_files()) hashes.push_back({{"file", file}, {kind, "text"}, {"xxh3", hash}});
+    for (const auto& [file, hash] : input.text_files())
+      hashes.push_back({{"file", file}, {kind, "text"}, {"xxh3", hash}});
     for (const std::string& file : input.data_files()) hashes.push_back(hashed(file));
     text = hashes.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
