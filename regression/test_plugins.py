@@ -175,10 +175,19 @@ class LoadingTest(PluginsTest):
         self.write(case())
         path = self.folder / "libevery_category.so"
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        for command, folder in (("run", "plugin method"), ("train", "training")):
-            self.works(command, "case.yaml", "--quiet", ranks=2)
+        queries = (
+            *("--set", "queries.points={heat_source.flux: [1e7 W/m^2, 2e7 W/m^2]}"),
+            *("--set", "output.probes={points: [{name: centre, position: [0 m, 0 m, 0 m]}]}"),
+        )
+        for command, folder, words in (
+            ("run", "plugin method", ()),
+            ("train", "training", ()),
+            ("run", "plugin method", queries),
+        ):
+            self.works(command, "case.yaml", "--quiet", *words, ranks=2)
             report = json.loads((self.folder / "results" / folder / "report.json").read_text())
             self.assertEqual(report["plugins"], [{"name": str(path.resolve()), "sha256": digest}])
+            self.assertIn("case.yaml", [Path(entry["file"]).name for entry in report["inputs"]])
         self.assertIn(digest, self.works("report", "results/training"))
 
     def test_a_run_without_plugins_reports_none(self):

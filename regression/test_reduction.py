@@ -1,6 +1,7 @@
 """From the full-order run to the reduced ones by one line of the input, and what a reduction file may be used for."""
 
 import json
+import shutil
 
 import numpy as np
 import pandas
@@ -54,6 +55,20 @@ class ReductionTest(KilnTest):
         training = json.loads((self.folder / "results" / "training" / "report.json").read_text())["training"]
         self.assertEqual([stage["name"] for stage in training["stages"]][0], "full-order run")
         self.assertGreater(training["sample_meshes"][0]["sigma_min"], 0.0)
+
+    def test_reports_tell_which_reduction_was_read(self):
+        shutil.copy(self.folder / "results" / "reduction.h5", self.folder / "copy.h5")
+        reports = []
+        for method in ("gnat", "lspg"):
+            for into, words in (("results", ()), ("named", (f"method.file={self.folder / 'copy.h5'}",))):
+                folder = self.solve("run", f"method.type={method}", *words, into=into, ranks=2) / method
+                reports.append(json.loads((folder / "report.json").read_text()))
+        seals = {report["method"]["reduction_seal"] for report in reports}
+        self.assertEqual(len(seals), 1)
+        for report in reports[1::2]:
+            named = [entry for entry in report["inputs"] if entry["kind"] == "data"]
+            self.assertEqual(named, [{"file": str(self.folder / "copy.h5"), "kind": "data", "seal": seals.pop()}])
+            seals.add(named[0]["seal"])
 
     def test_gnat_is_the_same_on_any_number_of_ranks(self):
         self.solve("run", "method.type=gnat")

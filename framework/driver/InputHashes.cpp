@@ -15,30 +15,29 @@ namespace {
 constexpr const char* kind = "kind";
 constexpr const char* data = "data";
 
-nlohmann::json hashed(const std::string& file) {
-  nlohmann::json entry = {{"file", file}, {kind, data}};
+}  // namespace
+
+nlohmann::json hash_of_data(const std::string& file) {
   try {
     const std::vector<hdf5::Segment> seal = hdf5::read_seal(file, false);
-    if (seal.empty()) {
-      entry["xxh3"] = hash_of_file(file);
-    } else {
-      entry["seal"] = hdf5::fingerprint(seal);
-    }
+    if (!seal.empty()) return {{"seal", hdf5::fingerprint(seal)}};
+    return {{"xxh3", hash_of_file(file)}};
   } catch (const FileError&) {
-    entry["xxh3"] = "unreadable";
+    return {{"xxh3", "unreadable"}};
   }
-  return entry;
 }
-
-}  // namespace
 
 nlohmann::json input_hashes(const Input& input, const Communicator& communicator) {
   std::string text;
   if (communicator.getRank() == 0) {
     nlohmann::json hashes = nlohmann::json::array();
-    for (const auto& [file, hash] : input.text_files())
+    for (const auto& [file, hash] : input.text_files()) {
       hashes.push_back({{"file", file}, {kind, "text"}, {"xxh3", hash}});
-    for (const std::string& file : input.data_files()) hashes.push_back(hashed(file));
+    }
+    for (const std::string& file : input.data_files()) {
+      hashes.push_back({{"file", file}, {kind, data}});
+      hashes.back().update(hash_of_data(file));
+    }
     text = hashes.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
   return nlohmann::json::parse(broadcast(communicator, text));

@@ -14,6 +14,9 @@ namespace kiln {
 /// Collective.
 nlohmann::json input_hashes(const Input& input, const Communicator& communicator);
 
+/// The hash of one data file, as above: {"xxh3": …} or {"seal": …}. Not collective.
+nlohmann::json hash_of_data(const std::string& file);
+
 /// The data files among them, a line each: name without folders, and hash. Tells runs on the same data from others.
 std::string data_identity(const nlohmann::json& hashes);
 

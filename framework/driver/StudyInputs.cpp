@@ -6,6 +6,7 @@
 #include <set>
 
 #include "framework/base/Hash.hpp"
+#include "framework/driver/InputHashes.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/files/Folders.hpp"
@@ -125,12 +126,8 @@ nlohmann::json StudyInputs::identity(std::size_t index, const std::string& neede
   if (communicator_->getRank() == 0) {
     for (const std::string& file : inputs_[index].data_files()) {
       if (std::find(made.begin(), made.end(), file) != made.end()) continue;
-      try {
-        data += hash_of_file(file);
-      } catch (const FileError&) {
-        // Gone since it was checked: the case itself will say so.
-        data += "unreadable";
-      }
+      // One that is gone since it was checked is told by the case itself.
+      data += hash_of_data(file).dump();
     }
   }
   return {{"kiln", version_},

@@ -18,7 +18,7 @@ struct Parameter {
   std::vector<double*> mirrors = {};  ///< take every new value too
 
   /// What is wrong with a value, e.g. "below 0"; empty: it is finite and allowed.
-  std::string trouble(double value) const;
+  std::string trouble(double proposed) const;
   /// What may follow "a power in W" in a message, e.g. " at least 0"; empty: nothing.
   const char* range() const;
 };

@@ -61,7 +61,7 @@ class ParticleFile final : public Particles {
     cloud.volumes = columns.volume;
     if (cloud.volumes.empty()) {
       if (volume_ <= 0.0) {
-        throw InputError(input_path_ + ".volume", fmt::format("is left out, and {} has no volumes", path_),
+        throw InputError(input_path_ + ".volume", fmt::format("is missing, and {} has no volumes", path_),
                          "the part's volume in m^3, or a column 'volume'");
       }
       cloud.volumes.assign(number, volume_ / static_cast<double>(number));

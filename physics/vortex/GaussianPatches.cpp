@@ -78,7 +78,7 @@ void PatchGrid::add_entries(Specification& specification) {
       .defaults_to(3.0);
   specification.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     if (list.isParameter("spacing") == list.isParameter("count")) {
-      problems.push_back({"spacing", list.isParameter("count") ? "stands beside count" : "is left out, and so is count",
+      problems.push_back({"spacing", list.isParameter("count") ? "stands beside count" : "is missing, and so is count",
                           "either spacing or count", ""});
     }
   });

@@ -34,7 +34,7 @@ class Snapshots {
   std::size_t count() const { return count_; }
   /// Columns appended since the last restart() or clear().
   std::size_t appended() const { return appended_; }
-  /// Σσ² of the singular vectors left out, relative to Σσ² of all that was appended.
+  /// Σσ² of the singular vectors left out, relative to Σσ² of all that was appended up to the last merge.
   double discarded_energy() const { return discarded_ > 0.0 ? discarded_ / appended_energy_ : 0.0; }
   /// rows × count; valid until the next append.
   MatrixView matrix() const;

@@ -1,13 +1,10 @@
 #include "rom/training/FitWeights.hpp"
 
-#include <fmt/format.h>
-
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <stdexcept>
 
-#include "framework/base/Error.hpp"
 #include "framework/model/Model.hpp"
 #include "rom/clustering/Points.hpp"
 #include "rom/files/ReductionFile.hpp"
@@ -70,10 +67,8 @@ VectorView coefficients(const Contributions& brought, const std::vector<double>&
     result(a) = product(brought[a], wanted);
   }
   dense::LuFactors factors;
-  if (!(factors.factor(normal) > std::numeric_limits<double>::epsilon())) {
-    throw InputError("reduction.clustering.ridge",
-                     fmt::format("{:g} does not tell sources apart that bring the same", ridge), "a larger ridge");
-  }
+  // The ridge keeps sources apart that bring the same; what is singular nonetheless is not finite.
+  if (!(factors.factor(normal) > 0.0)) throw std::logic_error("fit of weights: singular normal equations");
   factors.solve(result);
   return result;
 }

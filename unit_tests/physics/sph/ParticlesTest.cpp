@@ -121,7 +121,7 @@ TEST_F(ParticleFileTest, MistakesNameTheLine) {
   EXPECT_NE(message<FileError>("x,y,z,volume\n0,0,0,-1\n").find("line 2: the volume is -1"), std::string::npos);
   EXPECT_NE(message<FileError>("x,y,z,volume,area\n0,0,0,1,-2\n").find("line 2: the area is -2"), std::string::npos);
   EXPECT_NE(message<FileError>("x,y,z\n").find("has no line of numbers"), std::string::npos);
-  EXPECT_NE(message<InputError>("x,y,z\n0,0,0\n").find("model.particles.volume: is left out"), std::string::npos);
+  EXPECT_NE(message<InputError>("x,y,z\n0,0,0\n").find("model.particles.volume: is missing, and "), std::string::npos);
   try {
     read("missing.csv");
     FAIL();

@@ -102,7 +102,7 @@ TEST(VortexInput, MistakesAreCaughtByTheSpecification) {
   expect_in("model.kernel.core_radius", checked("core_radius: 0.1 m", "core_radius: .nan"));
   expect_in("model.particles.patches: an empty list is given; expected a list of blocks",
             checked("[{centre: [0 m, 1 m], radius: 0.5 m, circulation: 2 m^2/s}]", "[]"));
-  expect_in("model.particles.spacing: is left out, and so is count; expected either",
+  expect_in("model.particles.spacing: is missing, and so is count; expected either",
             checked("    spacing: 0.2 m\n", ""));
   expect_in("model.particles.spacing: stands beside count",
             checked("spacing: 0.2 m", "spacing: 0.2 m\n    count: 100"));
