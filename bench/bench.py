@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
 FOLDER = ROOT / "build/bench"
 # What sections share, and what reads the files of runs.
-sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "framework/report")]
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "regression/comparison")]
 # valgrind 3.19 stops at AVX-512.
 INSTRUCTIONS_BUILD = ROOT / "build/instructions"
 

@@ -110,7 +110,7 @@ class NightlyTest(unittest.TestCase):
         self.assertFalse((self.whole / "nightly/unfinished").exists())
 
     def test_next_run_begins_afresh(self):
-        sys.path[:0] = [str(REPOSITORY / "inputs/nrl-2022/reproduce"), str(REPOSITORY / "framework/report")]
+        sys.path[:0] = [str(REPOSITORY / "inputs/nrl-2022/reproduce"), str(REPOSITORY / "regression/comparison")]
         from nightly import begin
 
         left = self.folder / "nightly/study/experiment-1"

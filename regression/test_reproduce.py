@@ -16,7 +16,7 @@ import pandas
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[1]
 INPUTS = REPOSITORY / "inputs/nrl-2022"
-sys.path[:0] = [str(INPUTS / "reproduce"), str(REPOSITORY / "framework/report")]
+sys.path[:0] = [str(INPUTS / "reproduce"), str(REPOSITORY / "regression/comparison")]
 
 import figures
 import page

@@ -10,8 +10,9 @@
 #include <Tpetra_Operator.hpp>
 #include <Tpetra_Vector_decl.hpp>
 
-/// The one place that names template arguments of Tpetra and Kokkos. Everything stays on the default
-/// node, so a Trilinos built for OpenMP or CUDA needs no change elsewhere.
+/// The one place that names template arguments of Tpetra and Kokkos. Everything stays on the default node, so that a
+/// Trilinos built for another execution space needs no change elsewhere; Debian's is built for the serial one, and no
+/// other has been tried.
 namespace kiln {
 
 using Communicator = Teuchos::Comm<int>;

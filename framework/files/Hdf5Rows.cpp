@@ -30,7 +30,7 @@ MatrixView Group::read_rows(const std::string& name, const Map& map) const {
                 fmt::format("one for each particle, at least {}", map.getMaxAllGlobalIndex() + 1));
   }
   const Teuchos::RCP<const Map> slabs = slab_map(rows, map);
-  const std::size_t count = slabs->getMyGlobalIndices().extent(0);
+  const std::size_t count = local_size(*slabs);
   std::vector<std::size_t> start{count == 0 ? 0 : static_cast<std::size_t>(slabs->getMinGlobalIndex())};
   std::vector<std::size_t> extent{count};
   if (dataset.shape.size() == 2) {

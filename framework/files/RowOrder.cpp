@@ -46,7 +46,7 @@ bool is_dense(const Map& map) {
 }  // namespace
 
 RowOrder::RowOrder(const Map& map) : slabs_(slab_map(map.getGlobalNumElements(), map)) {
-  ids_.resize(slabs_->getMyGlobalIndices().extent(0));
+  ids_.resize(local_size(*slabs_));
   first_ = ids_.empty() ? 0 : static_cast<std::size_t>(slabs_->getMinGlobalIndex());
   if (is_dense(map)) {
     if (!map.isOneToOne()) throw_shared();
@@ -87,7 +87,7 @@ Teuchos::RCP<const Map> slab_map(std::size_t rows, const Map& map) {
 }
 
 MatrixView spread_slabs(const std::vector<double>& slab, std::size_t rows, std::size_t columns, const Map& map) {
-  MatrixView result("kiln::files::rows", map.getMyGlobalIndices().extent(0), columns);
+  MatrixView result("kiln::files::rows", local_size(map), columns);
   if (columns == 0) return result;
   const Teuchos::RCP<const Map> slabs = slab_map(rows, map);
   const Teuchos::RCP<const Map> wanted = Teuchos::rcp(new Map(map));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Pi.hpp"
 #include "framework/input/Mistakes.hpp"
 #include "framework/registry/Nearest.hpp"
 
@@ -24,8 +25,6 @@ struct Symbol {
   double factor = 1;
   double offset = 0;
 };
-
-constexpr double pi = 3.14159265358979323846;
 
 const std::vector<Symbol>& symbols() {
   static const std::vector<Symbol> table = {

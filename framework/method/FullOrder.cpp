@@ -13,6 +13,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Loop.hpp"
+#include "framework/base/ViewOf.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/method/Divergence.hpp"
@@ -227,10 +228,7 @@ void FullOrder::state(ConstVectorView x, VectorView u) const { Kokkos::deep_copy
 
 Method::Reader FullOrder::reader(const std::vector<LocalIndex>& places) const {
   const auto components = static_cast<LocalIndex>(model_->fields().size());
-  const Kokkos::View<LocalIndex*, Device> chosen("kiln::method::places", places.size());
-  const auto host = Kokkos::create_mirror_view(chosen);
-  std::copy(places.begin(), places.end(), host.data());
-  Kokkos::deep_copy(chosen, host);
+  const auto chosen = view_of<Kokkos::View<LocalIndex*, Device>>(places, "kiln::method::places");
   return [chosen, components](ConstVectorView x, VectorView u) {
     Kokkos::parallel_for(
         "kiln::method::read", RangePolicy(0, static_cast<LocalIndex>(chosen.extent(0))),

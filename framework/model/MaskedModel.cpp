@@ -13,6 +13,7 @@
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/model/DegreesOfFreedom.hpp"
+#include "framework/model/ParticleMap.hpp"
 
 namespace kiln {
 namespace {
@@ -58,11 +59,6 @@ std::vector<GlobalIndex> checked(std::vector<GlobalIndex> rows, const Map& full_
   return rows;
 }
 
-Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids, const Map& like) {
-  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  return Teuchos::rcp(new Map(unknown, Teuchos::arrayViewFromVector(ids), like.getIndexBase(), like.getComm()));
-}
-
 }  // namespace
 
 MaskedModel::MaskedModel(std::shared_ptr<const Model> full, const std::vector<GlobalIndex>& rows)
@@ -84,9 +80,9 @@ MaskedModel::MaskedModel(std::shared_ptr<const Model> full, const std::vector<Gl
   }
   std::vector<GlobalIndex> ids;
   for (const LocalIndex i : order) ids.push_back(full_sources.getGlobalElement(i));
-  sources_ = map_of(ids, full_sources);
+  sources_ = map_of(ids, full_sources.getComm());
   ids.resize(row_count);
-  rows_ = map_of(ids, full_rows);
+  rows_ = map_of(ids, full_rows.getComm());
 
   full_source_ = Indices("kiln::model::full source", order.size() * components_);
   const auto host = Kokkos::create_mirror_view(full_source_);

@@ -2,6 +2,9 @@
 
 #include <numeric>
 
+#include "framework/base/ViewOf.hpp"
+#include "framework/model/ParticleMap.hpp"
+
 namespace kiln {
 namespace {
 
@@ -9,15 +12,6 @@ std::vector<GlobalIndex> ids_of(const Map& map) {
   std::vector<GlobalIndex> result(static_cast<std::size_t>(local_size(map)));
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = map.getGlobalElement(static_cast<LocalIndex>(i));
   return result;
-}
-
-template <class View, class T>
-View filled(const std::vector<T>& values) {
-  View view(Kokkos::view_alloc(Kokkos::WithoutInitializing, "sample"), values.size());
-  const auto host = Kokkos::create_mirror_view(view);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(view, host);
-  return view;
 }
 
 }  // namespace
@@ -37,10 +31,10 @@ HeatDomain assembled(const DomainParts& parts, const Teuchos::RCP<const Communic
   domain.rows = map_of(parts.rows, communicator);
   domain.sources = map_of(parts.sources, communicator);
   domain.positions = position_view(parts.positions);
-  domain.masses = filled<VectorView>(parts.masses);
-  domain.areas = filled<VectorView>(parts.areas);
-  domain.weights = filled<VectorView>(parts.weights);
-  domain.pairs = {filled<OffsetView>(parts.offsets), filled<IndexView>(parts.neighbours)};
+  domain.masses = view_of<VectorView>(parts.masses, "sample");
+  domain.areas = view_of<VectorView>(parts.areas, "sample");
+  domain.weights = view_of<VectorView>(parts.weights, "sample");
+  domain.pairs = {view_of<OffsetView>(parts.offsets, "sample"), view_of<IndexView>(parts.neighbours, "sample")};
   return domain;
 }
 

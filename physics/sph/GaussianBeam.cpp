@@ -6,12 +6,11 @@
 
 #include "framework/base/Exponential.hpp"
 #include "framework/base/Loop.hpp"
+#include "framework/base/Pi.hpp"
 #include "physics/sph/HeatSource.hpp"
 
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 // Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
 const std::string beam_label = "kiln::sph::gaussian beam";

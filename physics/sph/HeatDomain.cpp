@@ -10,6 +10,8 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Memory.hpp"
+#include "framework/base/ViewOf.hpp"
+#include "framework/model/ParticleMap.hpp"
 #include "physics/sph/Distribution.hpp"
 #include "physics/sph/PairWeights.hpp"
 
@@ -121,22 +123,6 @@ Candidates candidates(const std::vector<Point>& positions, const std::vector<Glo
   return result;
 }
 
-IndexView index_view(const std::vector<LocalIndex>& values) {
-  IndexView view("indices", values.size());
-  const auto host = Kokkos::create_mirror_view(view);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(view, host);
-  return view;
-}
-
-VectorView vector_view(const std::vector<double>& values, const std::string& label) {
-  VectorView view(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), values.size());
-  const auto host = Kokkos::create_mirror_view(view);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(view, host);
-  return view;
-}
-
 void check_pairs(const ParticleCloud& cloud, const Candidates& around, const ConstPositionView& positions,
                  const IndexView& targets, const NeighbourList& pairs, const PairSettings& settings,
                  const Communicator& communicator) {
@@ -166,13 +152,6 @@ void check_pairs(const ParticleCloud& cloud, const Candidates& around, const Con
 
 }  // namespace
 
-Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids,
-                               const Teuchos::RCP<const Communicator>& communicator) {
-  const Teuchos::ArrayView<const GlobalIndex> view(ids.data(), static_cast<Teuchos::Ordinal>(ids.size()));
-  return Teuchos::rcp(
-      new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), view, GlobalIndex{0}, communicator));
-}
-
 HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings,
                         const Teuchos::RCP<const Communicator>& communicator) {
   check_positions(cloud, settings.path + ".particles");
@@ -191,7 +170,7 @@ HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings
   places.reserve(around.ids.size());
   for (const GlobalIndex id : around.ids) places.push_back(cloud.positions[id]);
   const ConstPositionView candidate_positions = position_view(places);
-  const IndexView targets = index_view(around.own);
+  const IndexView targets = view_of<IndexView>(around.own, "indices");
   NeighbourList pairs = find_neighbours(candidate_positions, targets, settings.support);
   check_pairs(cloud, around, candidate_positions, targets, pairs, settings, *communicator);
 
@@ -229,8 +208,8 @@ HeatDomain whole_domain(const ParticleCloud& cloud, const PairSettings& settings
   domain.rows = map_of(own, communicator);
   domain.sources = map_of(sources, communicator);
   domain.positions = position_view(source_places);
-  domain.masses = vector_view(masses, "masses");
-  domain.areas = vector_view(areas, "heated areas");
+  domain.masses = view_of<VectorView>(masses, "masses");
+  domain.areas = view_of<VectorView>(areas, "heated areas");
   return domain;
 }
 

@@ -64,8 +64,4 @@ void save_domain(const HeatDomain& domain, hdf5::Group& group);
 /// do not fit together. Collective.
 HeatDomain restored_domain(const hdf5::Group& group, const Teuchos::RCP<const Communicator>& communicator);
 
-/// A map of the given local ids.
-Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids,
-                               const Teuchos::RCP<const Communicator>& communicator);
-
 }  // namespace kiln

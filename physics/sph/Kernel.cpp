@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "framework/base/Pi.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Eq. 8.
 class CubicSpline final : public Kernel {

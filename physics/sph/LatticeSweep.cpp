@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/ViewOf.hpp"
 #include "physics/sph/LatticeBox.hpp"
 #include "physics/sph/PairLayout.hpp"
 
@@ -65,15 +66,6 @@ void sweep_blocks(const LatticeRows& lattice, const VectorView& sums) {
   Kokkos::parallel_for(
       "kiln::sph::lattice sweep", RangePolicy(0, static_cast<LocalIndex>(lattice.blocks.extent(0))),
       KOKKOS_LAMBDA(LocalIndex block) { lattice.sweep<quantity>(block, sums.data()); });
-}
-
-template <class View, class T>
-View view_of(const std::vector<T>& values, const std::string& label) {
-  View view(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), values.size());
-  const auto host = Kokkos::create_mirror_view(view);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(view, host);
-  return view;
 }
 
 class LatticeSweep final : public PairLayout {

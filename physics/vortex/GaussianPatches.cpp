@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Pi.hpp"
 
 namespace kiln {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double most_nodes = 1e8;
 
 /// Calls visit(x, y) at the grid's nodes within `cutoff` radii of a patch. Returns false, and visits none, where the

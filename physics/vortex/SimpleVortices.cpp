@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "framework/base/Pi.hpp"
 #include "framework/files/CsvColumns.hpp"
 #include "framework/registry/Registry.hpp"
 #include "physics/vortex/Vortices.hpp"
 
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Two vortices on the x-axis, the origin half way between them.
 class VortexPair final : public Vortices {

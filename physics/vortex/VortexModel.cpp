@@ -2,21 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_ArrayView.hpp>
-#include <Teuchos_OrdinalTraits.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <stdexcept>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Pi.hpp"
+#include "framework/base/ViewOf.hpp"
+#include "framework/model/ParticleMap.hpp"
 #include "framework/registry/Registry.hpp"
 #include "physics/vortex/PairLoops.hpp"
 #include "physics/vortex/Vortices.hpp"
 
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 VortexTable table_of(const Teuchos::ParameterList& list, const Model::Context& context) {
   const Teuchos::ParameterList& particles = list.sublist("particles");
@@ -49,21 +48,6 @@ std::vector<GlobalIndex> sources_of(const VortexTable& table, const std::vector<
   std::vector<GlobalIndex> sources(own_rows);
   std::set_difference(acting.begin(), acting.end(), own_rows.begin(), own_rows.end(), std::back_inserter(sources));
   return sources;
-}
-
-Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids,
-                               const Teuchos::RCP<const Communicator>& communicator) {
-  const auto unknown = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
-  return Teuchos::rcp(new Map(unknown, Teuchos::arrayViewFromVector(ids), GlobalIndex{0}, communicator));
-}
-
-template <class View, class T>
-View filled(const std::string& label, const std::vector<T>& values) {
-  View view(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), values.size());
-  const auto host = Kokkos::create_mirror_view(view);
-  std::copy(values.begin(), values.end(), host.data());
-  Kokkos::deep_copy(view, host);
-  return view;
 }
 
 std::size_t padded(std::size_t count) {
@@ -132,10 +116,10 @@ void VortexModel::make_arrays(const std::vector<GlobalIndex>& own_sources) {
   array_y_ = VectorView("kiln::vortex::y", array_padded_);
   std::vector<double> circulations(table_.circulations);
   circulations.resize(padded(count), 0.0);
-  array_circulations_ = filled<VectorView>("kiln::vortex::circulations", circulations);
+  array_circulations_ = view_of<VectorView>(circulations, "kiln::vortex::circulations");
   std::vector<LocalIndex> places;
   for (const GlobalIndex id : own_sources) places.push_back(static_cast<LocalIndex>(table_.source(id)));
-  places_ = filled<Indices>("kiln::vortex::places", places);
+  places_ = view_of<Indices>(places, "kiln::vortex::places");
 }
 
 void VortexModel::make_lists(const std::vector<GlobalIndex>& own_rows, const std::vector<GlobalIndex>& own_sources) {
@@ -159,9 +143,9 @@ void VortexModel::make_lists(const std::vector<GlobalIndex>& own_rows, const std
     circulations.resize(sources.size(), 0.0);
     offsets.push_back(sources.size());
   }
-  list_offsets_ = filled<Offsets>("kiln::vortex::list offsets", offsets);
-  list_sources_ = filled<Indices>("kiln::vortex::list sources", sources);
-  list_circulations_ = filled<VectorView>("kiln::vortex::list circulations", circulations);
+  list_offsets_ = view_of<Offsets>(offsets, "kiln::vortex::list offsets");
+  list_sources_ = view_of<Indices>(sources, "kiln::vortex::list sources");
+  list_circulations_ = view_of<VectorView>(circulations, "kiln::vortex::list circulations");
 }
 
 void VortexModel::check(const char* method, std::size_t u, std::size_t f) const {

@@ -11,7 +11,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
-sys.path[:0] = [str(REPOSITORY / "inputs/nrl-2022/reproduce"), str(REPOSITORY / "framework/report")]
+sys.path[:0] = [str(REPOSITORY / "inputs/nrl-2022/reproduce"), str(REPOSITORY / "regression/comparison")]
 
 import history
 from gold_values import Tolerances, compare, read_gold, update_gold

@@ -15,7 +15,7 @@ namespace {
 hdf5::Array<double> gather_rows(const std::vector<GlobalIndex>& ids, const Map& map, const ConstMatrixView& local) {
   const std::size_t columns = local.extent(1);
   hdf5::Array<double> result{{ids.size(), columns}, std::vector<double>(ids.size() * columns, 0.0)};
-  const auto owned = static_cast<LocalIndex>(map.getMyGlobalIndices().extent(0));
+  const auto owned = local_size(map);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const LocalIndex row = map.getLocalElement(ids[i]);
     if (row < 0 || row >= owned) continue;
@@ -56,7 +56,7 @@ ParticleTable ParticleTable::gather(const std::vector<GlobalIndex>& ids, const M
   ParticleTable table;
   table.ids = ids;
   table.components = components;
-  const std::size_t owned = map.getMyGlobalIndices().extent(0);
+  const std::size_t owned = local_size(map);
   MatrixView columns("kiln::rom::positions", owned, 3);
   for (std::size_t i = 0; i < owned; ++i) {
     for (int d = 0; d < 3; ++d) columns(i, d) = positions(i, d);

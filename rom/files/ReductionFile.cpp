@@ -209,7 +209,7 @@ std::vector<GlobalIndex> ReductionFile::queries() const {
 ReductionFile::Rows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
                             const std::string& file) {
   const std::size_t components = tables.front()->components;
-  const std::size_t count = particles.getMyGlobalIndices().extent(0);
+  const std::size_t count = local_size(particles);
   VectorView reference("kiln::rom::reference", count * components);
   MatrixView modes("kiln::rom::modes", count * components, columns);
   std::optional<Fault> fault;

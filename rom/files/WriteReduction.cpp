@@ -18,7 +18,7 @@ namespace {
 /// Ids that any rank holds, ascending and once each, on every rank.
 std::vector<GlobalIndex> all_ids(const Map& map) {
   const Communicator& communicator = *map.getComm();
-  const std::size_t local = map.getMyGlobalIndices().extent(0);
+  const std::size_t local = local_size(map);
   const int mine = static_cast<int>(local);
   int longest = mine;
   Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &mine, &longest);

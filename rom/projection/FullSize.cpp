@@ -31,7 +31,7 @@ Projection::Factors factors_of(const Teuchos::ParameterList& method) {
 PetrovGalerkin::Parts full_size_parts(const std::shared_ptr<Model>& model, const std::vector<TimeWindow>& windows,
                                       ConstVectorView reference, ConstMatrixView modes,
                                       const std::function<std::unique_ptr<TestBasis>()>& test_basis) {
-  const std::size_t particles = model->rows()->getMyGlobalIndices().extent(0);
+  const std::size_t particles = local_size(*model->rows());
   const std::size_t rows = particles * model->fields().size();
   PetrovGalerkin::Parts parts;
   parts.particles = model->rows();

@@ -18,7 +18,7 @@ namespace {
 /// The columns of A that belong to this rank's rows. Collective.
 MatrixView local_columns(const SampleMesh& mesh, const Map& rows, std::size_t components, const std::string& file) {
   const std::size_t modes = mesh.gappy_operator.shape[0], width = mesh.gappy_operator.shape[1];
-  const std::size_t count = rows.getMyGlobalIndices().extent(0);
+  const std::size_t count = local_size(rows);
   MatrixView result("kiln::rom::gappy operator", modes, count * components);
   std::optional<Fault> fault;
   for (std::size_t i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ Teuchos::RCP<const Map> dealt(const ParticleTable& table, const Teuchos::RCP<con
 }
 
 PositionView positions_at(const Map& particles, const ParticleTable& table) {
-  const std::size_t count = particles.getMyGlobalIndices().extent(0);
+  const std::size_t count = local_size(particles);
   PositionView positions("kiln::rom::positions", count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::ptrdiff_t row = table.find(particles.getGlobalElement(static_cast<LocalIndex>(i)));

@@ -87,7 +87,7 @@ void PetrovGalerkin::restore(const hdf5::Group& group) {
                     "a time window of the reduction: 0 to " + std::to_string(windows_.size() - 1));
   }
   current_ = static_cast<std::size_t>(window);
-  projection().restore(group, coordinates_->getMyGlobalIndices().extent(0));
+  projection().restore(group, local_size(*coordinates_));
 }
 
 void PetrovGalerkin::report(nlohmann::json& section) const {

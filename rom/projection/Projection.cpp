@@ -48,12 +48,11 @@ Projection::Projection(Parts parts, const NewtonSettings& settings, Factors fact
       when_factored_(factors),
       jacobian_(*model_, settings.jacobian) {
   const std::size_t components = model_->fields().size();
-  const std::size_t rows = model_->rows()->getMyGlobalIndices().extent(0) * components;
+  const std::size_t rows = local_size(*model_->rows()) * components;
   row_size_ = static_cast<LocalIndex>(rows);
   jacobian_tangent_ = MatrixView("kiln::rom::J Phi", rows, size_);
   small_ = MatrixView("kiln::rom::reduced Jacobian", size_, size_);
-  state_ =
-      VectorView("kiln::rom::state of the sources", model_->sources()->getMyGlobalIndices().extent(0) * components);
+  state_ = VectorView("kiln::rom::state of the sources", local_size(*model_->sources()) * components);
   rate_ = VectorView("kiln::rom::rate", rows);
   residual_ = VectorView("kiln::rom::residual", rows);
   g_ = VectorView("kiln::rom::reduced residual", size_);

@@ -25,7 +25,7 @@ class Candidates {
       : rows_(rows),
         modes_(modes),
         components_(components),
-        standing_(rows.getMyGlobalIndices().extent(0), Standing::free),
+        standing_(local_size(rows), Standing::free),
         errors_(standing_.size(), 0.0),
         misfit_("kiln::rom::misfit", modes.extent(0)) {}
 

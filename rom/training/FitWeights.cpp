@@ -25,7 +25,7 @@ MatrixView rates(const Model& model, const std::vector<const ParticleTable*>& ta
   const std::size_t columns = tables.front()->modes.shape[1] / tables.front()->components;
   const ReductionFile::Rows basis = rows_at(*model.sources(), tables, columns, "source clustering");
   const VectorView state("kiln::rom::state", basis.reference.extent(0));
-  const std::size_t rows = model.rows()->getMyGlobalIndices().extent(0) * tables.front()->components;
+  const std::size_t rows = local_size(*model.rows()) * tables.front()->components;
   MatrixView result("kiln::rom::rates at moments", rows, moments.size());
   for (std::size_t moment = 0; moment < moments.size(); ++moment) {
     Kokkos::deep_copy(state, basis.reference);

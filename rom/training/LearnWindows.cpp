@@ -24,7 +24,7 @@ constexpr double small_sigma = 1e-2;
 /// PΦ_r on every rank: the rows of the sampled particles, each with its components.
 MatrixView sampled_rows(const Map& rows, const MatrixView& modes, const std::vector<GlobalIndex>& ids, int components) {
   MatrixView result("kiln::rom::P Phi_r", ids.size() * components, modes.extent(1));
-  const auto owned = static_cast<LocalIndex>(rows.getMyGlobalIndices().extent(0));
+  const auto owned = local_size(rows);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const LocalIndex row = rows.getLocalElement(ids[i]);
     if (row < 0 || row >= owned) continue;

@@ -11,7 +11,7 @@ SnapshotObserver::SnapshotObserver(Method& method, Snapshots& snapshots, int eve
       every_(every),
       reference_("kiln::rom::reference", snapshots.rows()),
       state_("kiln::rom::state", snapshots.rows()) {
-  VectorView x("kiln::rom::unknown", method.coordinates()->getMyGlobalIndices().extent(0));
+  VectorView x("kiln::rom::unknown", local_size(*method.coordinates()));
   method.initial(x);
   method.state(x, reference_);
 }

@@ -29,7 +29,7 @@ double field_error(const TrialReference& reference, const UnknownRecord& record,
                    const Communicator& communicator) {
   const MatrixView exact = reference.states.matrix();
   const VectorView initial("kiln::rom::initial state", exact.extent(0)), state("kiln::rom::state", exact.extent(0));
-  const VectorView zero("kiln::rom::zero", full_size.coordinates()->getMyGlobalIndices().extent(0));
+  const VectorView zero("kiln::rom::zero", local_size(*full_size.coordinates()));
   full_size.initial(zero);
   full_size.state(zero, initial);
   double sums[2] = {0.0, 0.0};
@@ -51,7 +51,7 @@ double field_error(const TrialReference& reference, const UnknownRecord& record,
 QueryRecord::QueryRecord(Method& method, const std::vector<GlobalIndex>& ids)
     : communicator_(method.particles()->getComm()) {
   const Map& map = *method.particles();
-  const std::size_t components = method.fields().size(), particles = map.getMyGlobalIndices().extent(0);
+  const std::size_t components = method.fields().size(), particles = local_size(map);
   width_ = ids.size() * components;
   std::vector<LocalIndex> places;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -108,7 +108,7 @@ TrialErrors trial_run(const std::string& type, const Teuchos::ParameterList& inp
   if (reference.point.count() > 0) reference.point.set(0, method->parameters());
   const std::unique_ptr<TimeScheme> scheme =
       Registry<TimeScheme>::create(online.sublist("time").sublist("scheme"), TimeScheme::Context{*method, span.step});
-  VectorView x("kiln::rom::unknown", method->coordinates()->getMyGlobalIndices().extent(0));
+  VectorView x("kiln::rom::unknown", local_size(*method->coordinates()));
   method->initial(x);
   scheme->start(x, 0.0);
   QueryRecord queries(*method, reference.queries);

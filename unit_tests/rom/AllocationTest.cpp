@@ -99,7 +99,7 @@ Use online(Case values, const std::string& type) {
     const auto method = Registry<Method>::create(input.sublist("method"), Method::Context{input, world()});
     const auto scheme = Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"),
                                                      TimeScheme::Context{*method, values.step});
-    VectorView x("x", method->coordinates()->getMyGlobalIndices().extent(0));
+    VectorView x("x", local_size(*method->coordinates()));
     method->initial(x);
     scheme->start(x, 0.0);
     run_time_loop(*method, *scheme, x, {values.step, 0, values.steps}, {});

@@ -308,7 +308,7 @@ Teuchos::ParameterList input_of(const Case& values) {
       if (values.clustering == "robust") clustering.set("smooth", 0.0).set("weights", "sums");
     }
   }
-  reduction.sublist("snapshots").set("every", 1);
+  reduction.sublist("snapshots").set("every", values.snapshots_every);
   if (values.windows > 0) reduction.sublist("windows").set("count", values.windows);
   if (values.window_error > 0.0) reduction.sublist("windows").set("error", values.window_error);
   for (const auto& [key, powers] : {std::pair{"train_on", values.train_on}, std::pair{"try_on", values.try_on}}) {

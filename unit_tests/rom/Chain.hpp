@@ -94,6 +94,7 @@ struct Case {
   int refresh = 1;
   std::string jacobian = "matrix free";
   int basis_rank = 10, residual_rank = 12, samples = 24;
+  int snapshots_every = 1;
   std::string algorithm = "gram";
   std::string clustering = "";             ///< empty: the block is left out
   int clusters = 2;                        ///< of type "per row"

@@ -256,13 +256,12 @@ TEST(Gnat, OnASampleMeshIsCloseToLspg) {
 TEST(PetrovGalerkin, StartsFromTheNearestStateWhereTheReferenceIsAnother) {
   Case values;
   const std::shared_ptr<Model> model = model_of(values, world());
-  const VectorView zero("zero", model->sources()->getMyGlobalIndices().extent(0));
+  const VectorView zero("zero", local_size(*model->sources()));
   PetrovGalerkin::Parts parts =
       full_size_parts(model, {{1.0, 0, values.count}}, zero,
                       test::cosines(*model->sources(), 1, values.count, values.count), test::galerkin_test);
   PetrovGalerkin method(std::move(parts), newton_of(values));
-  VectorView x("x", values.count), u("u", method.row_size()),
-      initial("u0", model->sources()->getMyGlobalIndices().extent(0));
+  VectorView x("x", values.count), u("u", method.row_size()), initial("u0", local_size(*model->sources()));
   method.initial(x);
   method.state(x, u);
   model->initial_state(initial);

@@ -10,15 +10,9 @@
 #include "rom/sampling/GappyOperator.hpp"
 
 namespace kiln::test {
-namespace {
-
-std::size_t local_count(const Map& map) { return map.getMyGlobalIndices().extent(0); }
-
-}  // namespace
-
 MatrixView cosines(const Map& map, int components, int all_entries, int modes) {
-  MatrixView result("cosines", local_count(map) * components, modes);
-  for (std::size_t i = 0; i < local_count(map); ++i) {
+  MatrixView result("cosines", local_size(map) * components, modes);
+  for (std::size_t i = 0; i < local_size(map); ++i) {
     for (int c = 0; c < components; ++c) {
       const auto entry = map.getGlobalElement(static_cast<LocalIndex>(i)) * components + c;
       for (int k = 0; k < modes; ++k) {
@@ -41,7 +35,7 @@ NewtonSettings newton_of(const Case& values) {
 PetrovGalerkin::Parts parts_of(const std::shared_ptr<Model>& model, const Case& values, const MatrixView& on_sources,
                                const std::vector<TimeWindow>& windows,
                                const std::function<std::unique_ptr<TestBasis>()>& test) {
-  VectorView reference("reference", local_count(*model->sources()) * values.components);
+  VectorView reference("reference", local_size(*model->sources()) * values.components);
   model->initial_state(reference);
   return full_size_parts(model, windows, reference, on_sources, test);
 }
@@ -61,7 +55,7 @@ std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const 
   // PΦ_r of all ranks, in ascending order of ids, then this rank's columns of A.
   const Map& rows = *model.rows();
   std::vector<double> marks(values.count, 0.0);
-  for (std::size_t i = 0; i < local_count(rows); ++i) marks[rows.getGlobalElement(static_cast<LocalIndex>(i))] = 1.0;
+  for (std::size_t i = 0; i < local_size(rows); ++i) marks[rows.getGlobalElement(static_cast<LocalIndex>(i))] = 1.0;
   dense::sum_over_ranks(*rows.getComm(), marks.data(), marks.size());
   std::vector<GlobalIndex> sampled;
   for (int id = 0; id < values.count; ++id) {
@@ -69,8 +63,8 @@ std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const 
   }
   const Map everywhere(sampled.size(), Teuchos::arrayViewFromVector(sampled), 0, self());
   const GappyOperator gappy = gappy_operator(cosines(everywhere, components, all, residual_modes), "sampling");
-  MatrixView mine("A", residual_modes, local_count(rows) * components);
-  for (std::size_t i = 0; i < local_count(rows); ++i) {
+  MatrixView mine("A", residual_modes, local_size(rows) * components);
+  for (std::size_t i = 0; i < local_size(rows); ++i) {
     const LocalIndex place = everywhere.getLocalElement(rows.getGlobalElement(static_cast<LocalIndex>(i)));
     for (int c = 0; c < components; ++c) {
       for (int k = 0; k < residual_modes; ++k) mine(k, i * components + c) = gappy.matrix(k, place * components + c);
@@ -87,10 +81,10 @@ std::unique_ptr<PetrovGalerkin> gnat_projection(const std::shared_ptr<Model>& mo
 std::vector<double> gathered_state(const Method& method, ConstVectorView x) {
   const Map& map = *method.particles();
   const int components = static_cast<int>(method.fields().size());
-  VectorView u("state", local_count(map) * components);
+  VectorView u("state", local_size(map) * components);
   method.state(x, u);
   std::vector<double> all((map.getMaxAllGlobalIndex() + 1) * components, 0.0);
-  for (std::size_t i = 0; i < local_count(map); ++i) {
+  for (std::size_t i = 0; i < local_size(map); ++i) {
     for (int c = 0; c < components; ++c) {
       all[map.getGlobalElement(static_cast<LocalIndex>(i)) * components + c] = u(i * components + c);
     }
@@ -115,7 +109,7 @@ std::unique_ptr<Method> method_of(Case values, const std::string& type,
 }
 
 std::vector<double> march(Method& method, const Case& values, const std::vector<Observer*>& observers) {
-  VectorView x("x", method.coordinates()->getMyGlobalIndices().extent(0));
+  VectorView x("x", local_size(*method.coordinates()));
   method.initial(x);
   const auto scheme = Registry<TimeScheme>::create(input_of(values).sublist("time").sublist("scheme"),
                                                    TimeScheme::Context{method, values.step});

@@ -32,7 +32,7 @@ std::unique_ptr<Sampling> greedy(int samples, const std::vector<int>& seeds = {}
 /// Samples rows of a table known everywhere, spread over the ranks.
 Ids sample(const Sampling& sampling, const Table& table, int components, const Teuchos::RCP<const Communicator>& comm) {
   const Map map(table.size() / components, 0, comm);
-  const std::size_t particles = map.getMyGlobalIndices().extent(0);
+  const std::size_t particles = local_size(map);
   MatrixView modes("modes", particles * components, table.front().size());
   for (std::size_t i = 0; i < particles; ++i) {
     for (int c = 0; c < components; ++c) {

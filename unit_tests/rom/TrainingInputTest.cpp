@@ -85,6 +85,13 @@ TEST(TrainingInput, NamesItsMistakes) {
       "  type: procedure ii\n"
       "  basis: {rank: 9}\n"
       "  residual_basis: {rank: 8}\n");
+  const std::string loose = message(
+      "reduction:\n"
+      "  type: procedure ii\n"
+      "  basis: {rank: 4}\n"
+      "  residual_basis: {rank: 4}\n"
+      "  clustering: {type: among samples, ridge: 1e-7}\n");
+  EXPECT_NE(loose.find("reduction.clustering.ridge: '1e-7' is below 1e-06"), std::string::npos) << loose;
   EXPECT_NE(few.find("8 residual modes do not determine the coordinates of 9 basis vectors"), std::string::npos) << few;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -166,6 +167,16 @@ TEST(Training, WritesASelfContainedFile) {
   EXPECT_EQ(facts["basis"][0]["rank"], 10);
   EXPECT_EQ(facts["lspg"]["residual_snapshots"], facts["lspg"]["residuals"]);
   EXPECT_EQ(facts["sample_meshes"][0]["sampled"], 24);
+}
+
+TEST(Training, TakesTheLastStepWhereSnapshotsAreFartherApartThanTheRunIsLong) {
+  const TestFolder folder;
+  Case values = training_case(folder.path().string());
+  values.snapshots_every = std::numeric_limits<int>::max();
+  values.basis_rank = 1;
+  values.residual_rank = 4;
+  values.samples = 8;
+  EXPECT_EQ(train(values, world()).section("training")["state_snapshots"], 1);
 }
 
 TEST(Training, AllRowsAndACompleteResidualBasisMakeGnatLspg) {

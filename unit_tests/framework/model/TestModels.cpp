@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/model/ParticleMap.hpp"
+
 namespace kiln {
 namespace {
 
 KILN_REGISTER(Model, RationalDecay, "test rational decay", "one particle with a closed form");
 KILN_REGISTER(Model, DiffusionChain, "test diffusion chain", "a line of particles, all Jacobian forms");
 KILN_REGISTER(Model, PendulumRing, "test pendulum ring", "two components, rate alone");
-
-Teuchos::RCP<const Map> map_of(const std::vector<GlobalIndex>& ids, const Teuchos::RCP<const Communicator>& comm) {
-  return Teuchos::rcp(
-      new Map(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(), ids.data(), LocalIndex(ids.size()), 0, comm));
-}
 
 /// Blocks of uneven length: rank 0 has the most.
 std::vector<GlobalIndex> block(GlobalIndex particles, const Communicator& comm) {

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "framework/base/Pi.hpp"
 #include "unit_tests/framework/method/FullOrderCases.hpp"
 #include "unit_tests/physics/vortex/VortexCase.hpp"
 
 /// What vortices of any kernel conserve: Σ Γ x, Σ Γ y, Σ Γ |x|² and the Hamiltonian.
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// −1/(4π) Σ_{i<j} Γ_i Γ_j Q(r²), dQ/ds = q(s).
 double hamiltonian(const VortexCase& vortex_case, const VortexCloud& cloud, const std::vector<double>& places) {

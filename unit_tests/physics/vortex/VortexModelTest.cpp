@@ -1,3 +1,4 @@
+#include "framework/base/Pi.hpp"
 #include "physics/vortex/VortexModel.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +11,6 @@
 
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 using Names = std::vector<std::string>;
 

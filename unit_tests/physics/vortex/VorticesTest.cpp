@@ -1,3 +1,4 @@
+#include "framework/base/Pi.hpp"
 #include "physics/vortex/Vortices.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +13,6 @@
 
 namespace kiln {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 VortexCloud cloud_of(const Teuchos::ParameterList& list) {
   return Registry<Vortices>::create(list, {Tpetra::getDefaultComm()})->cloud();

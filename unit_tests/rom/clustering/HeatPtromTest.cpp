@@ -62,7 +62,7 @@ std::vector<double> run(Case values, const HeatCase& heat, const std::string& ty
   const auto method = Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
   const auto scheme =
       Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"), TimeScheme::Context{*method, values.step});
-  VectorView x("x", method->coordinates()->getMyGlobalIndices().extent(0));
+  VectorView x("x", local_size(*method->coordinates()));
   method->initial(x);
   scheme->start(x, 0.0);
   run_time_loop(*method, *scheme, x, {values.step, 0, values.steps}, {});

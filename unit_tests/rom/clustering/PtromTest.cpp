@@ -128,7 +128,7 @@ TEST_P(Chains, RestartBitByBit) {
   };
   for (const int stop : {13, 20, 21}) {
     const auto whole = method_of(values, "ptrom", world());
-    const std::size_t size = whole->coordinates()->getMyGlobalIndices().extent(0);
+    const std::size_t size = local_size(*whole->coordinates());
     VectorView x("x", size), kept("kept", size);
     auto scheme = scheme_of(*whole);
     whole->initial(x);
