@@ -5,8 +5,9 @@ than a second to end a failed run, so not all of them do."""
 
 import fcntl
 import re
+import subprocess
 
-from harness import SMALL, KilnTest, digests, main
+from harness import SMALL, KilnTest, command, digests, main
 
 STACK_TRACE = re.compile(r"terminate|what\(\)|Aborted|[Bb]acktrace|Segmentation|unforeseen|did not foresee")
 
@@ -44,6 +45,17 @@ class MessagesTest(KilnTest):
         """line:column of a word's first letter, as editors count."""
         before = text[: text.index(word)]
         return f"case.yaml:{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}: "
+
+    # Standard output
+
+    def test_full_standard_output(self):
+        for words in (("list",), ("check", SMALL), ("report", "results/fom")):
+            with self.subTest(words), open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run(
+                    command(*words), cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+                )
+                self.assertEqual(done.returncode, 2)
+                self.assertEqual(done.stderr, "standard output: cannot be written: No space left on device\n")
 
     # Command line
 
@@ -166,6 +178,20 @@ class MessagesTest(KilnTest):
     def test_unknown_method(self):
         words = ("method.type", "'gant'", "fom, galerkin, gnat, lspg", "did you mean 'gnat'?")
         self.wrong("run", SMALL, "--set", "method.type=gant", lines=1, words=words)
+
+    def test_a_difference_in_celsius(self):
+        words = ("model.table.step: '1 degC' counts from a zero of its own", "expected")
+        self.wrong("check", SMALL, "--set", "model.table.step=1 degC", lines=1, words=words)
+
+    def test_a_heat_source_that_heats_nothing(self):
+        rows = [f"{i % 3 * 1e-4},{i // 3 % 3 * 1e-4},{i // 9 * 1e-4}\n" for i in range(27)]
+        (self.folder / "particles.csv").write_text("x,y,z\n" + "".join(rows))
+        particles = "model.particles={type: file, path: particles.csv, spacing: 0.1 mm, volume: 0.027 mm^3}"
+        words = ("model.heat_source", "a gaussian beam heats no particle", "column 'area'", "heat_source: none")
+        self.wrong("check", SMALL, "--set", particles, lines=1, words=words, ranks=(1, 2))
+        self.assertEqual(
+            self.kiln("check", SMALL, "--set", particles, "--set", "model.heat_source=none").stderr.count("area"), 0
+        )
 
     # Data and output files
 

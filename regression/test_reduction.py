@@ -98,6 +98,15 @@ class ReductionTest(KilnTest):
         self.assertLess(np.abs(reduced - full).max() / rise, OTHER_POWER_BOUND)
         self.assertGreater(np.abs(trained - full).max() / rise, 2.0 * OTHER_POWER_BOUND, "the bound tells powers apart")
 
+    def test_nothing_is_known_of_later(self):
+        for method in ("galerkin", "lspg", "gnat"):
+            with self.subTest(method):
+                self.solve("run", f"method.type={method}", "time.end=1 ms", into="shorter")
+                refused = self.kiln("run", SMALL, "--set", f"method.type={method}", "--set", "time.end=2.05 ms")
+                self.assertEqual((refused.status, refused.stdout), (2, ""))
+                for word in ("results/reduction.h5", "trained to 0.002 s", "goes on to 0.00205 s"):
+                    self.assertIn(word, refused.stderr)
+
     def test_another_model_is_refused_by_name(self):
         for override, words in (
             ("model.kernel=wendland c2", ("model.kernel", "cubic spline", "wendland c2")),

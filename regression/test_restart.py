@@ -180,6 +180,19 @@ class RestartTest(KilnTest):
         self.refused("another run", "power: 20", "power: 3", overrides=("model.heat_source.power=3 W",), ranks=2)
         self.refused("another run", "end: 0.002", "end: 0.003", overrides=("time.end=3 ms",))
 
+    def test_other_rows_in_the_tables(self):
+        self.solve("run")
+        elsewhere = "output.probes.points.0.position=[0.7 mm, -0.1 mm, 0.5 mm]"
+        self.refused("another run", "0.0006", "0.0007", overrides=(elsewhere,))
+        self.refused("another run", "every: 1", "every: 7", overrides=("output.extremes.every=7",), ranks=2)
+
+    def test_a_killed_run_leaves_no_report_of_an_earlier_one(self):
+        folder = self.solve("run", *self.overrides("fom"), into="killed") / "fom"
+        self.assertTrue((folder / "report.txt").exists())
+        (folder / "checkpoint.h5").unlink()
+        self.kill_after(20, "fom", "killed", 1)
+        self.assertFalse((folder / "report.txt").exists())
+
     def test_truncated_checkpoint(self):
         checkpoint = self.solve("run") / "fom" / "checkpoint.h5"
         whole = checkpoint.read_bytes()

@@ -11,6 +11,24 @@ from harness import HERE, KilnTest, main
 
 INPUTS = HERE.parent / "inputs" / "vortex"
 
+ERRORS_CASE = """\
+title: five vortices
+model:
+  type: vortex
+  particles: {type: file, path: vortices.csv}
+  kernel: {type: rosenhead-moore, core_radius: 0.2 m}
+time: {end: 2 s, step: 0.05 s, scheme: trapezoidal, newton: {tolerance: 1e-8, jacobian: matrix free}}
+method: {type: fom}
+reduction:
+  type: procedure ii
+  basis: {rank: 3}
+  residual_basis: {rank: 4}
+  sampling: {type: greedy, samples: 4}
+output:
+  directory: results
+  probes: {points: [{name: first, position: [SHIFT m, SHIFT m, 0 m]}]}
+"""
+
 
 class VortexInputsTest(KilnTest):
     def run_input(self, name, *settings, into, ranks=1):
@@ -58,6 +76,21 @@ class VortexInputsTest(KilnTest):
         self.assertGreater(error, 0.0)
         report = json.loads((direct / "report.json").read_text())
         self.assertEqual(report["method"]["model"]["pairs"], number * (number - 1))
+
+    def test_training_states_errors_that_know_no_origin(self):
+        """Of the same vortices far away, whose coordinates are large beside all that they move."""
+        stated = []
+        for shift in (0.0, 1000.0):
+            rows = [(0.0, 0.0, 1.5), (1.0, 0.2, 1.0), (-0.7, 0.9, 0.8), (0.3, -1.1, -0.6), (1.4, 1.2, 0.4)]
+            table = "".join(f"{x + shift},{y + shift},{circulation}\n" for x, y, circulation in rows)
+            (self.folder / "vortices.csv").write_text("x,y,circulation\n" + table)
+            (self.folder / "case.yaml").write_text(ERRORS_CASE.replace("SHIFT", str(shift)))
+            trained = self.kiln("train", "case.yaml", "--quiet")
+            self.assertEqual((trained.status, trained.stdout), (0, ""), trained.stderr)
+            report = json.loads((self.folder / "results" / "training" / "report.json").read_text())
+            stated.append(report["training"]["trial"]["worst_query_error"])
+        self.assertGreater(stated[0], 1e-4)
+        self.assertAlmostEqual(stated[1] / stated[0], 1.0, delta=0.01)
 
 
 if __name__ == "__main__":

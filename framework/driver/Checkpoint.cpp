@@ -20,6 +20,8 @@ constexpr long long format = 3;
 
 /// For HDF5's own account of what a checkpoint holds.
 constexpr std::uint64_t smallest_room = 65536;
+/// For the first checkpoint, in unknowns: the state, the one of the Jacobian, and two earlier ones of the scheme.
+constexpr std::uint64_t first_unknowns = 4;
 
 /// First line in which two texts differ, as "'a' there, 'b' here".
 std::string first_difference(const std::string& there, const std::string& here) {
@@ -44,7 +46,8 @@ Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, std::string i
       communicator_(context.communicator),
       folder_(context.folder),
       identity_(std::move(identity)),
-      room_(smallest_room + identity_.size() + 3 * sizeof(double) * method_.coordinates()->getGlobalNumElements()) {}
+      room_(smallest_room + identity_.size() +
+            first_unknowns * sizeof(double) * method_.coordinates()->getGlobalNumElements()) {}
 
 void Checkpoint::observe(const Moment& moment) {
   if (!moment.checkpoint) return;

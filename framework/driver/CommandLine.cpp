@@ -12,7 +12,7 @@
 #include <functional>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/ExitStatus.hpp"
+#include "framework/base/ExitStatus.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
@@ -21,6 +21,7 @@
 #include "framework/driver/StudySpecification.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Compare.hpp"
+#include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugins.hpp"
 #include "framework/registry/Describe.hpp"
@@ -33,13 +34,6 @@
 
 namespace kiln {
 namespace {
-
-void print(const Communicator& communicator, const std::string& text) {
-  if (communicator.getRank() == 0) {
-    std::fputs(text.c_str(), stdout);
-    std::fflush(stdout);
-  }
-}
 
 void add_outside_flag(CLI::App* command, bool& allow_outside) {
   command->add_flag("--allow-outside", allow_outside,
@@ -123,185 +117,220 @@ void write_reference(const std::filesystem::path& folder, const Teuchos::RCP<con
   for (const auto& [name, text] : reference_pages(kinds)) write_atomically(folder / name, text, communicator, false);
 }
 
+/// The commands of the program: what their options are read into, and the one that was asked for.
+class Commands {
+ public:
+  Commands(CLI::App& app, const Teuchos::RCP<const Communicator>& communicator)
+      : app_(app), communicator_(communicator) {
+    app_.require_subcommand(1);
+    add_run();
+    add_train();
+    add_study();
+    add_check();
+    add_list();
+    add_describe();
+    add_template();
+    add_schema();
+    add_reference();
+    add_compare();
+    add_report();
+    for (CLI::App* command : with_plugins_) plugins_.add_to(command);
+  }
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+  /// Carries out what the parsed command line asks for; returns its exit status.
+  int carry_out() const {
+    plugins_.load(*communicator_);
+    return command_();
+  }
+
+ private:
+  CLI::App* add(const char* name, const char* what, std::function<int()> command) {
+    CLI::App* added = app_.add_subcommand(name, what);
+    added->callback([this, command = std::move(command)] { command_ = command; });
+    return added;
+  }
+
+  /// One that looks at components, which plugins may add.
+  CLI::App* add_with_plugins(const char* name, const char* what, std::function<int()> command) {
+    CLI::App* added = add(name, what, std::move(command));
+    with_plugins_.push_back(added);
+    return added;
+  }
+
+  int say(const std::string& text) const {
+    print(*communicator_, text);
+    return exit_success;
+  }
+
+  void add_run() {
+    CLI::App* added = add_with_plugins("run", "Run an input: full order or reduced, as its `method` says", [this] {
+      const SignalWatch watch;
+      run(options_, communicator_);
+      return exit_success;
+    });
+    add_input_options(added, options_);
+    added->add_flag("--restart", options_.restart, "continue from the last checkpoint in the run's folder");
+    added->add_flag("--quiet", options_.quiet, "no progress bar, no tables");
+  }
+
+  void add_train() {
+    const char* what = "Learn the reduction that an input's `reduction` block describes";
+    CLI::App* added = add_with_plugins("train", what, [this] {
+      const SignalWatch watch;
+      train(options_, communicator_);
+      return exit_success;
+    });
+    add_input_options(added, options_);
+    added->add_flag("--quiet", options_.quiet, "no progress bar, no tables");
+  }
+
+  void add_study() {
+    const char* what = "Run a matrix of cases; keeps what is complete, resumes the rest";
+    CLI::App* added = add_with_plugins("study", what, [this] {
+      if (list_only_) return say(list_study(study_options_, communicator_));
+      const SignalWatch watch;
+      return study(study_options_, communicator_);
+    });
+    added->add_option("FILE", study_options_.file, "study file (YAML)")->required();
+    added
+        ->add_option("--set", study_options_.overrides, "change one entry of the study file, e.g. --set output=results")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false);
+    added->add_option("--only", study_options_.only, "these cases and what they need, e.g. --only 'part/gnat-*'")
+        ->type_name("GLOB")
+        ->allow_extra_args(false);
+    added->add_flag("--list", list_only_, "print the cases with their states; run nothing");
+    add_outside_flag(added, study_options_.allow_outside);
+    added->add_flag("--quiet", study_options_.quiet, "no progress; failures are told nonetheless");
+  }
+
+  void add_check() {
+    const char* what = "Check an input without running it; prints it with all defaults";
+    CLI::App* added = add_with_plugins("check", what, [this] {
+      check(options_, communicator_);
+      return exit_success;
+    });
+    add_input_options(added, options_);
+  }
+
+  void add_list() {
+    add_with_plugins("list", "List all components: models, methods, schemes, kernels, …",
+                     [this] { return say(list_components()); });
+  }
+
+  void add_describe() {
+    CLI::App* added = add_with_plugins("describe", "Explain a component and its keys", [this] {
+      const WholeFile* file = whole_file(name_);
+      return say(file == nullptr ? describe(name_)
+                                 : describe(file->specification(), fmt::format("Keys of the {}", file->title)));
+    });
+    added->add_option("NAME", name_, "a component or a category of `kiln list`; 'input' or 'study' for a whole file")
+        ->required();
+  }
+
+  void add_template() {
+    CLI::App* added = add_with_plugins("template", "Print a commented YAML block to start from", [this] {
+      const WholeFile* file = whole_file(name_);
+      return say(file == nullptr ? template_of(name_) : template_of(file->specification(), file->title));
+    });
+    added->add_option("NAME", name_, "a component of `kiln list`; 'input' or 'study' for a whole file")->required();
+  }
+
+  void add_schema() {
+    CLI::App* added = add_with_plugins("schema", "Print a JSON Schema of input files, for editors", [this] {
+      const WholeFile* file = whole_file(kind_);
+      if (file == nullptr) {
+        throw InputError("", fmt::format("there is no kind of file '{}'", kind_), "input or study",
+                         nearest(kind_, {"input", "study"}));
+      }
+      return say(schema_of(file->specification(), fmt::format("Kiln: {}", file->title)).dump(1) + "\n");
+    });
+    added->add_option("KIND", kind_, "'input' or 'study'")->capture_default_str();
+  }
+
+  void add_reference() {
+    const char* what = "Write pages with all keys of all components (Markdown)";
+    CLI::App* added = add_with_plugins("reference", what, [this] {
+      write_reference(folder_, communicator_);
+      return exit_success;
+    });
+    added->add_option("FOLDER", folder_, "where to")->required();
+  }
+
+  void add_compare() {
+    const char* what = "Compare two run folders or two result files, field by field";
+    CLI::App* added = add("compare", what, [this] { return compare_files(); });
+    added->add_option("A", left_, "run folder, .h5, .csv or .json")->required()->check(CLI::ExistingPath);
+    added->add_option("B", right_, "the same kind; A's errors are relative to it")
+        ->required()
+        ->check(CLI::ExistingPath);
+    added->add_option("--tolerance", tolerance_, "largest relative difference")
+        ->capture_default_str()
+        ->check(non_negative);
+    added->add_option("--floor", floor_, "values below it count as this large")
+        ->capture_default_str()
+        ->check(non_negative);
+    added
+        ->add_option("--field", own_tolerances_,
+                     "tolerance, and floor in the field's unit, of the fields with this name, as printed; '*' stands "
+                     "for any text; of several the first one counts")
+        ->type_name("FIELDS=TOLERANCE[,FLOOR]")
+        ->allow_extra_args(false);
+  }
+
+  int compare_files() const {
+    std::vector<FieldTolerance> own;
+    for (const std::string& text : own_tolerances_) own.push_back(field_tolerance(text));
+    int status = exit_success;
+    std::string text;
+    if (communicator_->getRank() == 0) {
+      try {
+        const CompareResult result = compare(left_, right_, tolerance_, floor_, own);
+        text = result.text();
+        for (const std::string& problem : result.unreadable) std::fprintf(stderr, "%s\n", problem.c_str());
+        status = !result.unreadable.empty() ? exit_bad_input : result.same() ? exit_success : exit_failure;
+      } catch (const std::filesystem::filesystem_error& error) {
+        std::fprintf(stderr, "%s: %s\n", error.path1().c_str(), error.code().message().c_str());
+        status = exit_bad_input;
+      }
+    }
+    print(*communicator_, text);
+    Teuchos::broadcast(*communicator_, 0, &status);
+    return status;
+  }
+
+  void add_report() {
+    CLI::App* added = add("report", "Print the report of a finished run",
+                          [this] { return say(readable(read_report(folder_, *communicator_))); });
+    added->add_option("DIR", folder_, "run folder")->required();
+  }
+
+  CLI::App& app_;
+  Teuchos::RCP<const Communicator> communicator_;
+  PluginOptions plugins_;
+  std::vector<CLI::App*> with_plugins_;
+  CommandOptions options_;
+  StudyOptions study_options_;
+  bool list_only_ = false;
+  std::string name_, kind_ = "input", left_, right_, folder_;
+  double tolerance_ = 1e-10, floor_ = 0.0;
+  std::vector<std::string> own_tolerances_;
+  std::function<int()> command_;
+};
+
 }  // namespace
 
 int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& communicator) {
   CLI::App app("Kiln: heat deposition by smoothed particle hydrodynamics, full order or reduced, from one YAML file.",
                "kiln");
-  app.require_subcommand(1);
   app.set_version_flag("--version", version_line());
   app.footer(
       "Exit status: 0 done, 1 a comparison differs, a case of a study failed or an unforeseen error, 2 bad input or "
-      "data file, 3 the solve "
-      "diverged, 4 stopped by SIGTERM or SIGINT.\nRun the computing commands on R ranks with mpirun -n R kiln …");
-
-  CommandOptions options;
-  std::string name, left, right, folder;
-  double tolerance = 1e-10;
-  double floor = 0.0;
-  std::vector<std::string> own_tolerances;
-  std::function<int()> command;
-  PluginOptions plugin_options;
-
-  CLI::App* run_app = app.add_subcommand("run", "Run an input: full order or reduced, as its `method` says");
-  add_input_options(run_app, options);
-  run_app->add_flag("--restart", options.restart, "continue from the last checkpoint in the run's folder");
-  run_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
-  run_app->callback([&] {
-    command = [&]() -> int {
-      const SignalWatch watch;
-      run(options, communicator);
-      return exit_success;
-    };
-  });
-
-  CLI::App* train_app = app.add_subcommand("train", "Learn the reduction that an input's `reduction` block describes");
-  add_input_options(train_app, options);
-  train_app->add_flag("--quiet", options.quiet, "no progress bar, no tables");
-  train_app->callback([&] {
-    command = [&]() -> int {
-      const SignalWatch watch;
-      train(options, communicator);
-      return exit_success;
-    };
-  });
-
-  StudyOptions study_options;
-  bool list_only = false;
-  CLI::App* study_app = app.add_subcommand("study", "Run a matrix of cases; keeps what is complete, resumes the rest");
-  study_app->add_option("FILE", study_options.file, "study file (YAML)")->required();
-  study_app
-      ->add_option("--set", study_options.overrides, "change one entry of the study file, e.g. --set output=results")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  study_app->add_option("--only", study_options.only, "these cases and what they need, e.g. --only 'part/gnat-*'")
-      ->type_name("GLOB")
-      ->allow_extra_args(false);
-  study_app->add_flag("--list", list_only, "print the cases with their states; run nothing");
-  add_outside_flag(study_app, study_options.allow_outside);
-  study_app->add_flag("--quiet", study_options.quiet, "no progress; failures are told nonetheless");
-  study_app->callback([&] {
-    command = [&]() -> int {
-      if (list_only) {
-        print(*communicator, list_study(study_options, communicator));
-        return exit_success;
-      }
-      const SignalWatch watch;
-      return study(study_options, communicator);
-    };
-  });
-
-  CLI::App* check_app = app.add_subcommand("check", "Check an input without running it; prints it with all defaults");
-  add_input_options(check_app, options);
-  check_app->callback([&] {
-    command = [&]() -> int {
-      check(options, communicator);
-      return exit_success;
-    };
-  });
-
-  CLI::App* list_app = app.add_subcommand("list", "List all components: models, methods, schemes, kernels, …");
-  list_app->callback([&] {
-    command = [&]() -> int {
-      print(*communicator, list_components());
-      return exit_success;
-    };
-  });
-
-  CLI::App* describe_app = app.add_subcommand("describe", "Explain a component and its keys");
-  describe_app
-      ->add_option("NAME", name, "a component or a category of `kiln list`; 'input' or 'study' for a whole file")
-      ->required();
-  describe_app->callback([&] {
-    command = [&]() -> int {
-      const WholeFile* file = whole_file(name);
-      print(*communicator, file == nullptr
-                               ? describe(name)
-                               : describe(file->specification(), fmt::format("Keys of the {}", file->title)));
-      return exit_success;
-    };
-  });
-
-  CLI::App* template_app = app.add_subcommand("template", "Print a commented YAML block to start from");
-  template_app->add_option("NAME", name, "a component of `kiln list`; 'input' or 'study' for a whole file")->required();
-  template_app->callback([&] {
-    command = [&]() -> int {
-      const WholeFile* file = whole_file(name);
-      print(*communicator, file == nullptr ? template_of(name) : template_of(file->specification(), file->title));
-      return exit_success;
-    };
-  });
-
-  std::string kind = "input";
-  CLI::App* schema_app = app.add_subcommand("schema", "Print a JSON Schema of input files, for editors");
-  schema_app->add_option("KIND", kind, "'input' or 'study'")->capture_default_str();
-  schema_app->callback([&] {
-    command = [&]() -> int {
-      const WholeFile* file = whole_file(kind);
-      if (file == nullptr) {
-        throw InputError("", fmt::format("there is no kind of file '{}'", kind), "input or study",
-                         nearest(kind, {"input", "study"}));
-      }
-      print(*communicator, schema_of(file->specification(), fmt::format("Kiln: {}", file->title)).dump(1) + "\n");
-      return exit_success;
-    };
-  });
-
-  CLI::App* reference_app = app.add_subcommand("reference", "Write pages with all keys of all components (Markdown)");
-  reference_app->add_option("FOLDER", folder, "where to")->required();
-  reference_app->callback([&] {
-    command = [&]() -> int {
-      write_reference(folder, communicator);
-      return exit_success;
-    };
-  });
-
-  for (CLI::App* loads :
-       {run_app, train_app, study_app, check_app, list_app, describe_app, template_app, schema_app, reference_app}) {
-    plugin_options.add_to(loads);
-  }
-
-  CLI::App* compare_app = app.add_subcommand("compare", "Compare two run folders or two result files, field by field");
-  compare_app->add_option("A", left, "run folder, .h5, .csv or .json")->required()->check(CLI::ExistingPath);
-  compare_app->add_option("B", right, "the same kind; A's errors are relative to it")
-      ->required()
-      ->check(CLI::ExistingPath);
-  compare_app->add_option("--tolerance", tolerance, "largest relative difference")
-      ->capture_default_str()
-      ->check(non_negative);
-  compare_app->add_option("--floor", floor, "values below it count as this large")
-      ->capture_default_str()
-      ->check(non_negative);
-  compare_app
-      ->add_option("--field", own_tolerances,
-                   "tolerance, and floor in the field's unit, of the fields with this name, as printed; '*' stands for "
-                   "any text; of several the first one counts")
-      ->type_name("FIELDS=TOLERANCE[,FLOOR]")
-      ->allow_extra_args(false);
-  compare_app->callback([&] {
-    command = [&]() -> int {
-      std::vector<FieldTolerance> own;
-      for (const std::string& text : own_tolerances) own.push_back(field_tolerance(text));
-      int status = exit_success;
-      if (communicator->getRank() == 0) {
-        const CompareResult result = compare(left, right, tolerance, floor, own);
-        print(*communicator, result.text());
-        for (const std::string& problem : result.unreadable) std::fprintf(stderr, "%s\n", problem.c_str());
-        status = !result.unreadable.empty() ? exit_bad_input : result.same() ? exit_success : exit_failure;
-      }
-      Teuchos::broadcast(*communicator, 0, &status);
-      return status;
-    };
-  });
-
-  CLI::App* report_app = app.add_subcommand("report", "Print the report of a finished run");
-  report_app->add_option("DIR", folder, "run folder")->required();
-  report_app->callback([&] {
-    command = [&]() -> int {
-      print(*communicator, readable(read_report(folder, *communicator)));
-      return exit_success;
-    };
-  });
+      "data file, 3 the solve diverged, 4 stopped by SIGTERM or SIGINT.\nRun the computing commands on R ranks with "
+      "mpirun -n R kiln …");
+  Commands commands(app, communicator);
 
   try {
     app.parse(argc, argv);
@@ -318,8 +347,7 @@ int command_line(int argc, char** argv, const Teuchos::RCP<const Communicator>& 
   }
 
   try {
-    plugin_options.load(*communicator);
-    return command();
+    return commands.carry_out();
   } catch (...) {
     return report_failure(std::current_exception(), *communicator);
   }

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/ExitStatus.hpp"
+#include "framework/base/ExitStatus.hpp"
 #include "framework/driver/StopRequest.hpp"
 
 namespace kiln {

@@ -14,17 +14,19 @@
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/InputHashes.hpp"
 #include "framework/driver/OutputPlace.hpp"
+#include "framework/driver/QueryRun.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/driver/StopRequest.hpp"
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/RunFolder.hpp"
+#include "framework/files/StandardOutput.hpp"
+#include "framework/files/Together.hpp"
 #include "framework/input/Input.hpp"
 #include "framework/method/Trainer.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/plugin/Plugins.hpp"
-#include "framework/queries/QueryRun.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
 #include "framework/report/ReportText.hpp"
@@ -35,6 +37,15 @@ namespace kiln {
 namespace {
 
 using Comm = Teuchos::RCP<const Communicator>;
+
+/// What a restart must have in common with the run it goes on with: all that decides its numbers, and which of them its
+/// tables hold, row after row. `data`: data_identity of the input.
+std::string identity_of(const Teuchos::ParameterList& list, const std::string& data) {
+  Teuchos::ParameterList tables(list.sublist("output"));
+  for (const char* key : {"directory", "checkpoint"}) tables.remove(key, false);
+  return fmt::format("model:\n{}time:\n{}method:\n{}output:\n{}data files:\n{}", to_yaml(list.sublist("model")),
+                     to_yaml(list.sublist("time")), to_yaml(list.sublist("method")), to_yaml(tables), data);
+}
 
 /// Everything one run is made of, built from its input in the order in which the parts need each other.
 class Assembly {
@@ -47,9 +58,7 @@ class Assembly {
     method_ = Registry<Method>::create(list.sublist("method"), {list, communicator});
     scheme_ = Registry<TimeScheme>::create(list.sublist("time").sublist("scheme"), {*method_, span_.step});
     x_ = VectorView("kiln::run::unknown", local_size(*method_->coordinates()));
-    const std::string identity =
-        fmt::format("model:\n{}time:\n{}method:\n{}data files:\n{}", to_yaml(list.sublist("model")),
-                    to_yaml(list.sublist("time")), to_yaml(list.sublist("method")), data);
+    const std::string identity = identity_of(list, data);
     if (restart) {
       span_.first_step = Checkpoint::restore(folder, identity, *method_, *scheme_, x_, span_.last_step, communicator);
     } else {
@@ -164,10 +173,15 @@ void write_report(const RunReport& report, const std::filesystem::path& folder, 
   const std::string text = readable(report.facts());
   write_atomically(folder / "report.json", report.facts().dump(2) + "\n", communicator);
   write_atomically(folder / "report.txt", text, communicator);
-  if (!quiet && communicator->getRank() == 0) {
-    std::fputs(text.c_str(), stdout);
-    std::fflush(stdout);
-  }
+  if (!quiet) print(*communicator, text);
+}
+
+/// What an earlier run reported is not true of the files of the one that begins.
+void remove_report(const std::filesystem::path& folder, const Communicator& communicator) {
+  on_root(communicator, folder.string(), [&folder]() -> std::optional<Fault> {
+    for (const char* name : {"report.json", "report.txt"}) std::filesystem::remove(folder / name);
+    return std::nullopt;
+  });
 }
 
 Input read_input(const CommandOptions& options, const Comm& communicator) {
@@ -185,14 +199,16 @@ Input read_input(const CommandOptions& options, const Comm& communicator) {
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const Communicator& communicator) : communicator_(communicator) {
+    // An unusable TMPDIR throws on all ranks alike.
+    const std::filesystem::path folder = std::filesystem::temp_directory_path();
     std::string path(4096, '\0');
     if (communicator.getRank() == 0) {
-      std::string pattern = (std::filesystem::temp_directory_path() / "kiln-check-XXXXXX").string();
+      std::string pattern = (folder / "kiln-check-XXXXXX").string();
       if (mkdtemp(pattern.data()) != nullptr) path.replace(0, pattern.size(), pattern);
     }
     Teuchos::broadcast(communicator, 0, static_cast<int>(path.size()), path.data());
     path_ = path.c_str();
-    if (path_.empty()) throw FileError(std::filesystem::temp_directory_path(), "", "no folder can be made in it");
+    if (path_.empty()) throw FileError(folder.string(), "", "no folder can be made in it");
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -223,7 +239,9 @@ void answer_timed(const Stopwatch& total, const Input& input, const CommandOptio
     throw InputError("queries", "a run that answers queries leaves no checkpoint", "kiln run without --restart");
   }
   const RunFolder folder(run_folder(list), *communicator);
+  const nlohmann::json hashes = input_hashes(input, *communicator);
   const auto queries = located(input, [&] { return std::make_unique<QueryRun>(list, communicator); });
+  remove_report(folder.path(), *communicator);
   const Seconds setup = elapsed(total, *communicator);
   const Stopwatch stepping;
   const std::string type = list.sublist("method").get<std::string>("type");
@@ -240,7 +258,7 @@ void answer_timed(const Stopwatch& total, const Input& input, const CommandOptio
       {"status", diverged == 0 ? "complete" : fmt::format("{} of {} points diverged", diverged, points)},
       {"steps", answers.steps.back()},
       {"step_s", list.sublist("time").get<double>("step")}};
-  report_origins(input_hashes(input, *communicator), report, *communicator);
+  report_origins(hashes, report, *communicator);
   queries->report(report);
   const Seconds all = elapsed(total, *communicator);
   report.section("time") = {{"setup_wall_s", setup.wall},
@@ -270,6 +288,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   if (!options.quiet) {
     assembly->add(std::make_unique<ProgressObserver>(type, assembly->span().first_step, *communicator));
   }
+  remove_report(folder.path(), *communicator);
   assembly->begin();
   const Seconds setup = elapsed(total, *communicator);
 
@@ -331,6 +350,7 @@ void train_timed(const Stopwatch& total, const Input& input, const CommandOption
                            {"method", list.sublist("reduction").get<std::string>("type")},
                            {"status", "complete"}};
   report_origins(input_hashes(input, *communicator), report, *communicator);
+  remove_report(folder.path(), *communicator);
   located(input, [&] {
     trainer->train(reduction_file(list), report);
     return 0;
@@ -378,10 +398,7 @@ void build(const Input& input, bool trains, const Comm& communicator) {
 void check(const CommandOptions& options, const Comm& communicator) {
   const Input input = read_input(options, communicator);
   build(input, false, communicator);
-  if (communicator->getRank() == 0) {
-    std::fputs(input.merged().c_str(), stdout);
-    std::fflush(stdout);
-  }
+  print(*communicator, input.merged());
 }
 
 }  // namespace kiln

@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/ExitStatus.hpp"
 #include "framework/driver/Checkpoint.hpp"
-#include "framework/driver/ExitStatus.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/Run.hpp"
@@ -19,6 +19,7 @@
 #include "framework/driver/StudyStates.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/RunFolder.hpp"
+#include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/input/Mistakes.hpp"
 #include "framework/observers/ProgressObserver.hpp"
@@ -239,17 +240,14 @@ int study(const StudyOptions& options, const Comm& communicator) {
   const int complete = matrix.count(CaseStatus::complete);
   const int failed = matrix.count(CaseStatus::failed);
   const int skipped = matrix.count(CaseStatus::skipped);
-  if (communicator->getRank() == 0) {
-    if (!options.quiet) {
-      const auto unselected = std::count(matrix.selected.begin(), matrix.selected.end(), false);
-      fmt::print("{} cases: {} complete ({} of them kept), {} failed, {} skipped{}; {} in all\n", matrix.cases.size(),
-                 complete, runner.kept(), failed, skipped,
-                 unselected == 0 ? "" : fmt::format(", {} not selected", unselected),
-                 short_duration(watch.wall_seconds()));
-      std::fflush(stdout);
-    }
-    std::fputs(failures_text(matrix).c_str(), stderr);
+  if (!options.quiet) {
+    const auto unselected = std::count(matrix.selected.begin(), matrix.selected.end(), false);
+    print(*communicator, fmt::format("{} cases: {} complete ({} of them kept), {} failed, {} skipped{}; {} in all\n",
+                                     matrix.cases.size(), complete, runner.kept(), failed, skipped,
+                                     unselected == 0 ? "" : fmt::format(", {} not selected", unselected),
+                                     short_duration(watch.wall_seconds())));
   }
+  if (communicator->getRank() == 0) std::fputs(failures_text(matrix).c_str(), stderr);
   return failed + skipped == 0 ? exit_success : exit_failure;
 }
 

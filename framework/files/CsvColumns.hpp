@@ -7,8 +7,7 @@
 
 namespace kiln {
 
-/// Numbers of a comma-separated file whose first line names the columns. Empty lines and lines that start with '#' are
-/// skipped.
+/// Numbers of a comma-separated file whose first line names the columns (for_each_csv_row()).
 struct CsvColumns {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> values;  ///< one vector a column

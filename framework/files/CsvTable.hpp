@@ -12,8 +12,9 @@ struct CsvTable {
   std::vector<std::vector<double>> rows;
 };
 
-/// Reads a table as CsvLog and pandas write them; "nan" and "inf" are numbers. Throws FileError that names the line for
-/// a missing file, a row of another length or a cell that is no number. Not collective.
+/// Reads a table as CsvLog, pandas and spreadsheets write them (for_each_csv_row()); "nan" and "inf" are numbers.
+/// Throws FileError that names the line for a missing file, a row of another length or a cell that is no number. Not
+/// collective.
 CsvTable read_csv(const std::filesystem::path& path);
 
 }  // namespace kiln

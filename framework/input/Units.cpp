@@ -384,7 +384,9 @@ Quantity parse_quantity(std::string_view text) {
   }
   if (rest.empty()) return {scaled(text, number, 0), false, {}};
   const Unit unit = parse_unit(rest);
-  if (unit.offset != 0) return {scaled(text, number, unit.exponent) * unit.factor + unit.offset, true, unit.dimension};
+  if (unit.offset != 0) {
+    return {scaled(text, number, unit.exponent) * unit.factor + unit.offset, true, unit.dimension, true};
+  }
   const double value = scaled(text, number, unit.exponent) * unit.factor;
   if (!std::isfinite(value)) {
     throw InputError("", fmt::format("{} is beyond double precision", in_quotes(std::string(text))));

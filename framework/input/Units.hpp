@@ -39,9 +39,10 @@ std::vector<std::string> symbols_of(const Dimension& dimension);
 
 /// A number with or without a unit.
 struct Quantity {
-  double value;         ///< in SI; as written without a unit
-  bool has_unit;        ///< false: the number stands alone
-  Dimension dimension;  ///< of the unit
+  double value;                ///< in SI; as written without a unit
+  bool has_unit;               ///< false: the number stands alone
+  Dimension dimension;         ///< of the unit
+  bool from_own_zero = false;  ///< the unit counts from a zero of its own, as degC does
 };
 
 /// Reads "50 um", "4e-6", "25 W/(m K)", "20 degC". Throws InputError for anything else, for infinity, NaN and what

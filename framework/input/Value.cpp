@@ -84,6 +84,9 @@ double ValueReader::real(const YamlNode& node, const Entry& entry) const {
   const Quantity quantity = parse_quantity(node.text);
   const Unit unit = parse_unit(entry.unit);
   if (quantity.has_unit && quantity.dimension != unit.dimension) refuse(wrong_dimension(node.text, quantity.dimension));
+  if (quantity.from_own_zero && entry.is_difference) {
+    refuse(fmt::format("{} counts from a zero of its own, and a difference is meant", in_quotes(node.text)));
+  }
   check_range(quantity.value, node.text, entry);
   return quantity.value;
 }

@@ -210,7 +210,7 @@ bool FullOrder::searched_update(const StepResidual& residual, VectorView x, Vect
                                 SolveReport& report) {
   const double start = norm;
   double length = 1.0;
-  for (int halved = 0; halved <= halvings; ++halved, length /= 2) {
+  for (int halved = 0; halved <= NewtonSettings::halvings; ++halved, length /= 2) {
     add_scaled(x, -length, update_, trial_);
     norm = norm_at(residual, trial_, f);
     ++report.residuals;

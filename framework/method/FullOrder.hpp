@@ -21,7 +21,6 @@ class FullOrder : public Method {
  public:
   /// A norm this many times the first one of its step is divergence.
   static constexpr double divergence_growth = 1e6;
-  static constexpr int halvings = 10;
 
   static Specification specification();
   /// Creates the model of the block `model` and reads `time.newton`.

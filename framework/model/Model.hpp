@@ -21,6 +21,8 @@ class PointRates;
 struct Field {
   std::string name;
   std::string unit;
+  bool origin_is_free =
+      false;  ///< as of a position: only differences of values mean something, and errors relate to them
 };
 
 /// A full-order model: the semi-discrete system du/dt = f(u, t; µ) of Eq. 12, on this rank's rows.

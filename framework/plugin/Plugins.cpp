@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/ExitStatus.hpp"
+#include "framework/base/ExitStatus.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugin.hpp"
 #include "framework/plugin/SharedLibrary.hpp"

@@ -9,6 +9,11 @@ EntryBuilder& EntryBuilder::unit(std::string si_unit) {
   return *this;
 }
 
+EntryBuilder& EntryBuilder::difference() {
+  entry_.is_difference = true;
+  return *this;
+}
+
 EntryBuilder& EntryBuilder::above(double bound) {
   entry_.lower = bound;
   entry_.open_lower = true;

@@ -42,6 +42,7 @@ struct Entry {
   Kind kind = Kind::text;
   std::string help;                    ///< one line
   std::string unit = "1";              ///< SI unit of reals
+  bool is_difference = false;          ///< a difference of two values: units with a zero of their own do not serve
   Value fallback;                      ///< default; monostate: none
   bool required = true;                ///< false with a fallback, or when it may be left out
   std::optional<double> lower, upper;  ///< range of numbers
@@ -57,6 +58,8 @@ class EntryBuilder {
  public:
   explicit EntryBuilder(Entry& entry) : entry_(entry) {}
   EntryBuilder& unit(std::string si_unit);
+  /// A step or a width, of which degC says nothing: it counts from a zero of its own.
+  EntryBuilder& difference();
   EntryBuilder& above(double bound);
   EntryBuilder& at_least(double bound);
   EntryBuilder& below(double bound);

@@ -20,8 +20,9 @@ struct NewtonSettings {
   double tolerance = 1e-3;  ///< of the residual norm, relative to the step's first one
   int iterations = 10;      ///< cap on updates a step
   JacobianForm jacobian = JacobianForm::diagonal;
-  int refresh = 10;          ///< steps between two evaluations of the Jacobian; 1: every step
-  bool line_search = false;  ///< halve an update until the residual norm falls
+  int refresh = 10;                    ///< steps between two evaluations of the Jacobian; 1: every step
+  bool line_search = false;            ///< halve an update until the residual norm falls
+  static constexpr int halvings = 10;  ///< of one update at most; the step ends where none of them helps
 
   /// The report's settings, which are the input's defaults too.
   NewtonSettings() = default;

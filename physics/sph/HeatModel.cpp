@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/Error.hpp"
 #include "framework/base/Loop.hpp"
 #include "framework/registry/Registry.hpp"
 #include "physics/sph/Kernel.hpp"
@@ -22,16 +23,11 @@ const std::string thermal_states_label = "kiln::sph::thermal states";
 const std::string absorbed_label = "kiln::sph::absorbed power";
 const std::string rate_label = "kiln::sph::rate";
 
-constexpr double default_from = 200.0;
-constexpr double default_to = 6000.0;
-constexpr double default_step = 1.0;
-
 MaterialTable material_table(const Teuchos::ParameterList& list, const Model::Context& context) {
   const Teuchos::ParameterList& block = list.sublist("material");
   const auto material = Registry<Material>::create(block, {context.communicator});
-  Teuchos::ParameterList range = list.isSublist("table") ? list.sublist("table") : Teuchos::ParameterList();
-  return {*material, range.get("from", default_from), range.get("to", default_to), range.get("step", default_step),
-          block.name()};
+  const TableRange range = TableRange::of(list);
+  return {*material, range.from, range.to, range.step, block.name()};
 }
 
 double initial_temperature(const Teuchos::ParameterList& list) {
@@ -55,9 +51,12 @@ HeatDomain domain_of(const Teuchos::ParameterList& list, const Model::Context& c
 
 Specification HeatModel::specification() {
   Specification table;
-  table.real("from", "lowest temperature; below it, its properties").unit("K").at_least(0).defaults_to(default_from);
-  table.real("to", "highest temperature; above it, its properties").unit("K").above(0).defaults_to(default_to);
-  table.real("step", "step of the table").unit("K").above(0).defaults_to(default_step);
+  table.real("from", "lowest temperature; below it, its properties")
+      .unit("K")
+      .at_least(0)
+      .defaults_to(TableRange().from);
+  table.real("to", "highest temperature; above it, its properties").unit("K").above(0).defaults_to(TableRange().to);
+  table.real("step", "step of the table").unit("K").difference().above(0).defaults_to(TableRange().step);
   table.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     if (list.get<double>("from") >= list.get<double>("to")) {
       problems.push_back(
@@ -125,7 +124,17 @@ HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context)
     : HeatModel(list, context, material_table(list, context)) {}
 
 HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context, const MaterialTable& table)
-    : HeatModel(list, table, domain_of(list, context, table)) {}
+    : HeatModel(list, table, domain_of(list, context, table)) {
+  const Teuchos::ParameterList& source = list.sublist("heat_source");
+  const int heated = static_cast<int>(heated_.extent(0));
+  int most = 0;
+  Teuchos::reduceAll(*context.communicator, Teuchos::REDUCE_MAX, 1, &heated, &most);
+  if (most == 0 && source.get<std::string>("type") != "none") {
+    throw InputError(source.name(),
+                     fmt::format("a {} heats no particle: none has a heated area", source.get<std::string>("type")),
+                     "heated areas, as a column 'area' of a particle file, or heat_source: none");
+  }
+}
 
 void HeatModel::check(const char* method, std::size_t u, std::size_t f) const {
   if (u == domain_.masses.extent(0) && f == domain_.areas.extent(0)) return;

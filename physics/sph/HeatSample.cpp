@@ -229,7 +229,8 @@ HeatDomain restored_domain(const hdf5::Group& group, const Teuchos::RCP<const Co
 
 namespace {
 
-MaterialTable restored_table(const hdf5::Group& group) {
+/// `range`: that of the model which the group is for.
+MaterialTable restored_table(const TableRange& range, const hdf5::Group& group) {
   const hdf5::Group table = group.group("material");
   const hdf5::Array<double> values = table.finite_reals("properties", {0, 3});
   if (values.shape[0] < 2) {
@@ -238,6 +239,12 @@ MaterialTable restored_table(const hdf5::Group& group) {
   const double from = table.finite_real("from"), step = table.finite_real("step");
   if (!(step > 0.0))
     throw FileError(table.file(), table.path() + " attribute 'step'", fmt::format("is {}", step), "above 0");
+  if (from != range.from || step != range.step || static_cast<double>(values.shape[0]) != range.intervals() + 1.0) {
+    throw FileError(
+        table.file(), table.path() + "/properties",
+        fmt::format("has {} rows from {} K in steps of {} K", values.shape[0], from, step),
+        fmt::format("those from {} K to {} K in steps of {} K, as the model has", range.from, range.to, range.step));
+  }
   if (!std::all_of(values.values.begin(), values.values.end(), [](double value) { return value > 0.0; })) {
     throw FileError(table.file(), table.path() + "/properties", "holds values that are not above 0",
                     "a table of properties");
@@ -268,6 +275,6 @@ void HeatModel::save_sample(hdf5::Group& group) const {
 }
 
 HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context, const hdf5::Group& group)
-    : HeatModel(list, restored_table(group), restored_domain(group, context.communicator)) {}
+    : HeatModel(list, restored_table(TableRange::of(list), group), restored_domain(group, context.communicator)) {}
 
 }  // namespace kiln

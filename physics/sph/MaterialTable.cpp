@@ -23,7 +23,7 @@ std::vector<double> tabulated(const Material& material, double from, double to, 
   if (!std::isfinite(from) || !std::isfinite(to) || !(to > from)) {
     throw InputError(path, fmt::format("the table of properties goes from {} K to {} K", from, to), "a rising range");
   }
-  const double intervals = std::ceil((to - from) / step * (1.0 - 1e-12));
+  const double intervals = TableRange{from, to, step}.intervals();
   if (!(step > 0.0) || !(intervals <= most_intervals)) {
     throw InputError(path, fmt::format("the table of properties has steps of {} K", step),
                      fmt::format("a step above 0 that gives at most {} entries", most_intervals));
@@ -41,6 +41,14 @@ std::vector<double> tabulated(const Material& material, double from, double to, 
 }
 
 }  // namespace
+
+TableRange TableRange::of(const Teuchos::ParameterList& model) {
+  if (!model.isSublist("table")) return {};
+  const Teuchos::ParameterList& table = model.sublist("table");
+  return {table.get<double>("from"), table.get<double>("to"), table.get<double>("step")};
+}
+
+double TableRange::intervals() const { return std::ceil((to - from) / step * (1.0 - 1e-12)); }
 
 MaterialTable::MaterialTable(const Material& material, double from, double to, double step, const std::string& path)
     : MaterialTable(from, step, tabulated(material, from, to, step, path)) {}

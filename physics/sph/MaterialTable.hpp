@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Teuchos_ParameterList.hpp>
 #include <complex>
 #include <string>
 #include <type_traits>
@@ -125,6 +126,15 @@ class MaterialLookup {
     return {row.values[0] + fraction * row.differences[0], row.values[1] + fraction * row.differences[1],
             row.values[2] + fraction * row.differences[2]};
   }
+};
+
+/// The block `table` of a model: at which temperatures (K) a material's properties are tabulated.
+struct TableRange {
+  double from = 200.0, to = 6000.0, step = 1.0;
+  /// Of a model's block, which may leave `table` out.
+  static TableRange of(const Teuchos::ParameterList& model);
+  /// Whole steps that reach `to`. Not a number where the range is none.
+  double intervals() const;
 };
 
 /// The table itself. Copies share its rows.

@@ -129,11 +129,7 @@ Specification CertifiedClusters::specification() {
       .at_least(0)
       .defaults_to(0.0);
   s.integer("leaf", "most particles of a node that is not cut in two").at_least(1).defaults_to(1);
-  s.choice("weights",
-           "of clusters. sums: of their members' weights; fitted: near these, such that the rates of the training come "
-           "out right in the mean",
-           {"sums", "fitted"})
-      .defaults_to("sums");
+  WeightFit::specify(s, "sums");
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
     if (!list.isParameter("opening") || !list.isParameter("clusters")) return;
     problems.push_back({"", "says both opening and clusters", "one of them: the other follows from it", ""});
@@ -147,7 +143,7 @@ CertifiedClusters::CertifiedClusters(const Teuchos::ParameterList& list, const N
       most_(list.isParameter("clusters") ? list.get<int>("clusters") : 0),
       smooth_(list.get<double>("smooth")),
       leaf_(list.get<int>("leaf")),
-      fitted_(list.get<std::string>("weights") == "fitted") {}
+      weight_fit_(WeightFit::of(list)) {}
 
 SourceClusters CertifiedClusters::clusters(const PairWeights& pairs, const SourceMotion& motion) const {
   const SharedSources sources(pairs, path_);

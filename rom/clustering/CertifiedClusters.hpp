@@ -20,9 +20,7 @@ class CertifiedClusters : public SourceClustering {
   CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
-  std::optional<WeightFit> weight_fit() const override {
-    return fitted_ ? std::optional(WeightFit::near_sums()) : std::nullopt;
-  }
+  std::optional<WeightFit> weight_fit() const override { return weight_fit_; }
 
  private:
   std::string path_;
@@ -30,7 +28,7 @@ class CertifiedClusters : public SourceClustering {
   std::size_t most_;  ///< clusters of a row; 0: as many as the opening gives
   double smooth_;
   std::size_t leaf_;
-  bool fitted_;
+  std::optional<WeightFit> weight_fit_;
 };
 
 }  // namespace kiln

@@ -7,8 +7,6 @@
 namespace kiln {
 namespace {
 
-constexpr const char* fitted = "fitted";
-
 /// Parts of a row's pairs, by their numbers.
 std::vector<std::vector<std::size_t>> parts_of_row(const PairWeights& pairs, std::size_t row,
                                                    const SourceMotion& motion, std::size_t most) {
@@ -46,16 +44,12 @@ Specification PerRow::specification() {
   s.integer("clusters", "most clusters of a row's sources; multiples of 8 fill the lanes of vectors")
       .at_least(1)
       .defaults_to(8);
-  s.choice("weights",
-           "of clusters. sums: of their members' weights; fitted: near these, such that the rates of the training come "
-           "out right in the mean",
-           {fitted, "sums"})
-      .defaults_to(fitted);
+  WeightFit::specify(s, "fitted");
   return s;
 }
 
 PerRow::PerRow(const Teuchos::ParameterList& list, const NoContext&)
-    : most_(list.get<int>("clusters")), fitted_(list.get<std::string>("weights") == fitted) {}
+    : most_(list.get<int>("clusters")), weight_fit_(WeightFit::of(list)) {}
 
 SourceClusters PerRow::clusters(const PairWeights& pairs, const SourceMotion& motion) const {
   SourceClusters result;

@@ -15,13 +15,11 @@ class PerRow : public SourceClustering {
   PerRow(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
-  std::optional<WeightFit> weight_fit() const override {
-    return fitted_ ? std::optional(WeightFit::near_sums()) : std::nullopt;
-  }
+  std::optional<WeightFit> weight_fit() const override { return weight_fit_; }
 
  private:
   std::size_t most_;  ///< clusters of a row
-  bool fitted_;
+  std::optional<WeightFit> weight_fit_;
 };
 
 }  // namespace kiln

@@ -15,7 +15,6 @@ struct Points {
   std::size_t dimension;
   std::vector<double> values;
 
-  std::size_t count() const { return dimension == 0 ? 0 : values.size() / dimension; }
   const double* operator[](std::size_t point) const { return values.data() + point * dimension; }
 };
 

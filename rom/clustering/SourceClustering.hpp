@@ -29,6 +29,11 @@ struct WeightFit {
 
   /// Near the sums of their members' weights, such that rates come out right in the mean.
   static WeightFit near_sums() { return {0.1}; }
+
+  /// The key `weights` of a clustering: sums or fitted.
+  static void specify(Specification& specification, const char* if_left_out);
+  /// What that key says; nothing: the sums as they are.
+  static std::optional<WeightFit> of(const Teuchos::ParameterList& list);
 };
 
 /// Gathers the many sources of each sampled row into few weighted ones (PTROM, Appendix A of NRL/6390/MR--2022/1).

@@ -4,8 +4,10 @@
 
 #include <Tpetra_Map.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/Together.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 
 namespace kiln {
@@ -121,6 +123,34 @@ ParticleTable ParticleTable::read(const hdf5::Group& group, std::vector<GlobalIn
 std::ptrdiff_t ParticleTable::find(GlobalIndex id) const {
   const auto place = std::lower_bound(ids.begin(), ids.end(), id);
   return place == ids.end() || *place != id ? -1 : place - ids.begin();
+}
+
+BasisRows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
+                  const std::string& file) {
+  const std::size_t components = tables.front()->components;
+  const std::size_t count = local_size(particles);
+  VectorView reference("kiln::rom::reference", count * components);
+  MatrixView modes("kiln::rom::modes", count * components, columns);
+  std::optional<Fault> fault;
+  for (std::size_t i = 0; i < count; ++i) {
+    const GlobalIndex id = particles.getGlobalElement(static_cast<LocalIndex>(i));
+    const auto holder = std::find_if(tables.begin(), tables.end(),
+                                     [id](const ParticleTable* candidate) { return candidate->find(id) >= 0; });
+    if (holder == tables.end()) {
+      fault = Fault{"", fmt::format("holds no basis row of particle {}", id), {}};
+      break;
+    }
+    const ParticleTable& table = **holder;
+    const std::size_t row = table.find(id), stride = table.modes.shape[1];
+    for (std::size_t c = 0; c < components; ++c) {
+      reference(i * components + c) = table.reference.values[row * components + c];
+      for (std::size_t k = 0; k < columns; ++k) {
+        modes(i * components + c, k) = table.modes.values[row * stride + k * components + c];
+      }
+    }
+  }
+  throw_together(*particles.getComm(), file, fault);
+  return {reference, modes};
 }
 
 }  // namespace kiln

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
@@ -12,6 +13,12 @@ namespace kiln {
 MatrixView fold(const MatrixView& entries, int components);
 /// The inverse of fold().
 MatrixView unfold(const MatrixView& particles, int components);
+
+/// u_ref and [Φ_0 Φ_1 …] at some particles, × components.
+struct BasisRows {
+  VectorView reference;
+  MatrixView modes;
+};
 
 /// Some particles with all that reduced methods need of them, the same on every rank.
 struct ParticleTable {
@@ -37,5 +44,11 @@ struct ParticleTable {
   /// Place of a particle in the table; −1 if it is not there.
   std::ptrdiff_t find(GlobalIndex id) const;
 };
+
+/// The rows of tables at the particles of a map, each in the first table that has it, and of the modes the first
+/// `columns`. Throws FileError naming `file`, which the tables are from, for a particle they lack. Collective over the
+/// map's ranks.
+BasisRows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
+                  const std::string& file);
 
 }  // namespace kiln

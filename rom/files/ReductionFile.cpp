@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "framework/base/Error.hpp"
+#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/Together.hpp"
 #include "rom/files/ReductionIdentity.hpp"
@@ -107,11 +108,21 @@ void ReductionFile::require_size(const Map& rows, std::size_t components) const 
                   fmt::format("{}, as the model has", particles));
 }
 
+void ReductionFile::require_end(const Teuchos::ParameterList& input) const {
+  const TimeSpan span = TimeSpan::of(input);
+  const double end = span.step * span.last_step, trained = windows_.back().end;
+  // Sums of steps round otherwise than their product.
+  if (end <= trained + 0.5 * span.step) return;
+  throw FileError(file_.file(), "",
+                  fmt::format("was trained to {:.6g} s, and this run goes on to {:.6g} s", trained, end),
+                  "a run that ends there, or earlier; or train again, to a later end");
+}
+
 void ReductionFile::require_time(const Teuchos::ParameterList& input) const {
   reduction_identity::require_time(file_, input.sublist("time"));
 }
 
-ReductionFile::Rows ReductionFile::basis(const Map& particles) const {
+BasisRows ReductionFile::basis(const Map& particles) const {
   const std::size_t components = components_;
   const MatrixView reference = unfold(finite_rows(file_, "reference", particles, particles_, components), components_);
   for (std::size_t w = 0; w < windows_.size(); ++w) {
@@ -204,34 +215,6 @@ ParticleTable ReductionFile::target_particles() const {
 std::vector<GlobalIndex> ReductionFile::queries() const {
   const hdf5::Array<long long> ids = file_.group("particles").integers("queries", {0});
   return {ids.values.begin(), ids.values.end()};
-}
-
-ReductionFile::Rows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
-                            const std::string& file) {
-  const std::size_t components = tables.front()->components;
-  const std::size_t count = local_size(particles);
-  VectorView reference("kiln::rom::reference", count * components);
-  MatrixView modes("kiln::rom::modes", count * components, columns);
-  std::optional<Fault> fault;
-  for (std::size_t i = 0; i < count; ++i) {
-    const GlobalIndex id = particles.getGlobalElement(static_cast<LocalIndex>(i));
-    const auto holder = std::find_if(tables.begin(), tables.end(),
-                                     [id](const ParticleTable* candidate) { return candidate->find(id) >= 0; });
-    if (holder == tables.end()) {
-      fault = Fault{"", fmt::format("holds no basis row of particle {}", id), {}};
-      break;
-    }
-    const ParticleTable& table = **holder;
-    const std::size_t row = table.find(id), stride = table.modes.shape[1];
-    for (std::size_t c = 0; c < components; ++c) {
-      reference(i * components + c) = table.reference.values[row * components + c];
-      for (std::size_t k = 0; k < columns; ++k) {
-        modes(i * components + c, k) = table.modes.values[row * stride + k * components + c];
-      }
-    }
-  }
-  throw_together(*particles.getComm(), file, fault);
-  return {reference, modes};
 }
 
 }  // namespace kiln

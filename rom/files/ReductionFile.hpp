@@ -37,6 +37,8 @@ class ReductionFile {
   void require_components(std::size_t components) const;
   /// Throws FileError unless time step and scheme of the input are those of the training.
   void require_time(const Teuchos::ParameterList& input) const;
+  /// Throws FileError unless the run of an input ends where the training did, or earlier: nothing is known of later.
+  void require_end(const Teuchos::ParameterList& input) const;
 
   const hdf5::Group& root() const { return file_; }
   /// Tells this reduction from one that was learnt anew.
@@ -48,12 +50,7 @@ class ReductionFile {
   /// Number of coordinates of all windows.
   int coordinates() const { return windows_.back().first + windows_.back().size; }
 
-  /// u_ref and [Φ_0 Φ_1 …] at the particles of a map.
-  struct Rows {
-    VectorView reference;
-    MatrixView modes;
-  };
-  Rows basis(const Map& particles) const;
+  BasisRows basis(const Map& particles) const;
 
   SampleMesh sample_mesh(std::size_t window) const;
   /// The group Model::save_sample wrote.
@@ -84,10 +81,5 @@ class ReductionFile {
   long long particles_;
   std::vector<TimeWindow> windows_;
 };
-
-/// The rows of tables at the particles of a map, each in the first table that has it, and of the modes the first
-/// `columns`. Throws FileError naming `file` for a particle they lack. Collective over the map's ranks.
-ReductionFile::Rows rows_at(const Map& particles, const std::vector<const ParticleTable*>& tables, std::size_t columns,
-                            const std::string& file);
 
 }  // namespace kiln

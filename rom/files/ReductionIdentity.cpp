@@ -38,6 +38,15 @@ std::vector<YamlDifference> differences_to(const hdf5::Group& group, const std::
   }
 }
 
+/// What the file calls itself; empty: nothing, or something else than a text.
+std::string format_of(const hdf5::Group& root) {
+  try {
+    return root.text("format");
+  } catch (const FileError&) {
+    return {};
+  }
+}
+
 /// The scheme's block without its name, so that texts compare.
 std::string scheme_text(const Teuchos::ParameterList& time) { return to_yaml(time.sublist("scheme")); }
 
@@ -60,7 +69,7 @@ void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Paramet
 }
 
 void require_format(const hdf5::Group& root) {
-  if (!root.has_attribute("format") || root.text("format") != format) {
+  if (format_of(root) != format) {
     throw FileError(root.file(), "", "is an HDF5 file, but not a reduction", "a file written by `kiln train`");
   }
   const long long found = root.integer("format_version");

@@ -5,7 +5,7 @@
 #include "framework/base/LinearAlgebra.hpp"
 
 /// Dense linear algebra of the reductions on local, column-major views: BLAS and LAPACK calls with the sizes read off
-/// the views. A matrix may be a block of a larger one. Nothing here allocates unless it returns something new.
+/// the views. A matrix may be a block of a larger one.
 namespace kiln::dense {
 
 static_assert(Kokkos::SpaceAccessibility<Kokkos::HostSpace, Device::memory_space>::accessible,

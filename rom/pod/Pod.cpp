@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "framework/base/Loop.hpp"
 #include "rom/pod/Tsqr.hpp"
 
 namespace kiln {
@@ -111,6 +112,18 @@ Small small_half_of_projection(const Tsqr& range, const MatrixView& snapshots, c
   return small;
 }
 
+/// Σσ² of all of S, whatever a decomposition has seen of it.
+double squared_norm(const MatrixView& snapshots, const Communicator& communicator) {
+  const auto rows = static_cast<LocalIndex>(snapshots.extent(0));
+  double total = 0.0;
+  for (std::size_t column = 0; column < snapshots.extent(1); ++column) {
+    const double* entries = &snapshots(0, column);
+    total += sum("kiln::rom::squared norm", rows, [entries](LocalIndex i) { return entries[i] * entries[i]; });
+  }
+  dense::sum_over_ranks(communicator, &total, 1);
+  return total;
+}
+
 double loss_of_orthogonality(const MatrixView& modes, const Communicator& communicator) {
   const MatrixView products = dense::gram(modes);
   dense::sum_over_ranks(communicator, products.data(), products.size());
@@ -142,7 +155,13 @@ Pod pod(const Snapshots& snapshots, const PodSettings& settings, const Communica
   dense::broadcast(communicator, small.singular_values.data(), small.singular_values.size());
   dense::broadcast(communicator, small.to_modes.data(), small.to_modes.size());
 
-  Pod result{{}, small.singular_values, truncate(small.singular_values, settings), 0.0, false};
+  const std::size_t count = snapshots.appended();
+  Pod result{{}, small.singular_values, truncate(small.singular_values, count, settings), count, 0.0, false};
+  if (settings.algorithm == PodSettings::Algorithm::randomised) {
+    double kept = 0.0;
+    for (int k = 0; k < result.truncation.rank; ++k) kept += std::pow(small.singular_values[k], 2);
+    result.truncation.energy = kept / squared_norm(matrix, communicator);
+  }
   const ConstMatrixView kept = dense::leading_columns(ConstMatrixView(small.to_modes), result.truncation.rank);
   if (factors) {
     result.modes = factors->apply(kept);

@@ -46,7 +46,7 @@ Specification PodSettings::specification() {
     if (rank && energy) problems.push_back({"rank", "both rank and energy are given", "one of the two", {}});
     if (energy && list.get<std::string>("algorithm") == "randomised") {
       problems.push_back(
-          {"energy", "a randomised decomposition does not know the energy of all snapshots", "rank", {}});
+          {"energy", "a randomised decomposition has to be told how many vectors it shall find", "rank", {}});
     }
     if (!rank && !energy) problems.push_back({"", "neither rank nor energy is given", "one of the two", {}});
   });
@@ -59,14 +59,14 @@ double PodSettings::resolution(std::size_t snapshots) const {
   return algorithm == Algorithm::gram ? std::sqrt(round_off) : 10.0 * round_off;
 }
 
-Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings) {
-  const double resolution = settings.resolution(singular_values.size());
+Truncation truncate(const std::vector<double>& singular_values, std::size_t snapshots, const PodSettings& settings) {
+  const double resolution = settings.resolution(snapshots);
   const double floor = singular_values.empty() ? 0.0 : resolution * singular_values.front();
   const auto end = std::find_if(singular_values.begin(), singular_values.end(),
                                 [floor](double sigma) { return !(sigma > floor) || !(sigma > 0.0); });
   const int independent = static_cast<int>(end - singular_values.begin());
   if (independent == 0) {
-    throw InputError(settings.path, fmt::format("all {} snapshots are zero", singular_values.size()),
+    throw InputError(settings.path, fmt::format("all {} snapshots are zero", snapshots),
                      "snapshots that differ from the reference state");
   }
   if (settings.rank && *settings.rank > independent && !settings.rank_is_cap) {
@@ -74,7 +74,7 @@ Truncation truncate(const std::vector<double>& singular_values, const PodSetting
         settings.path + ".rank",
         fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "
                     "values above {:.1e} of the largest)",
-                    *settings.rank, singular_values.size(), independent, resolution),
+                    *settings.rank, snapshots, independent, resolution),
         fmt::format("a rank of at most {}", independent));
   }
   const auto weight = [&settings](double sigma) {

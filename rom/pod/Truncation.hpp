@@ -39,12 +39,12 @@ struct PodSettings {
 struct Truncation {
   int rank;         ///< columns kept
   int independent;  ///< singular values above PodSettings::resolution()
-  double energy;    ///< fraction kept, of the independent ones' Σσ² or Σσ
+  double energy;  ///< fraction kept, of the independent ones' Σσ² or Σσ; randomised: of the Σσ² of all that are held
 };
 
-/// Smallest rank that keeps the energy asked for (at least `at_least`), or the rank asked for. `singular_values`
-/// descend. Throws InputError if nothing is independent (all snapshots zero) or a rank above `independent` is asked
-/// for.
-Truncation truncate(const std::vector<double>& singular_values, const PodSettings& settings);
+/// Smallest rank that keeps the energy asked for (at least `at_least`), or the rank asked for. `singular_values`, of so
+/// many snapshots, descend. Throws InputError if nothing is independent (all snapshots zero) or a rank above
+/// `independent` is asked for.
+Truncation truncate(const std::vector<double>& singular_values, std::size_t snapshots, const PodSettings& settings);
 
 }  // namespace kiln

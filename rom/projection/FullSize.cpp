@@ -51,10 +51,11 @@ PetrovGalerkin::Parts full_size_parts(const std::shared_ptr<Model>& model, const
 PetrovGalerkin::Parts full_size_parts(const Method::Context& context,
                                       const std::function<std::unique_ptr<TestBasis>()>& test_basis) {
   const ReductionFile reduction(context.input, context.communicator);
+  reduction.require_end(context.input);
   const std::shared_ptr<Model> model =
       Registry<Model>::create(context.input.sublist("model"), Model::Context{context.communicator});
   reduction.require_size(*model->rows(), model->fields().size());
-  const ReductionFile::Rows rows = reduction.basis(*model->sources());
+  const BasisRows rows = reduction.basis(*model->sources());
   PetrovGalerkin::Parts parts = full_size_parts(model, reduction.windows(), rows.reference, rows.modes, test_basis);
   parts.reduction = reduction.fingerprint();
   return parts;

@@ -9,7 +9,7 @@
 
 namespace kiln {
 
-/// Keys that galerkin, lspg and gnat share.
+/// Keys that all reduced methods share.
 Specification reduced_specification();
 /// The key `factors` of a reduced method's block.
 Projection::Factors factors_of(const Teuchos::ParameterList& method);

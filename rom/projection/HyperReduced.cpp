@@ -57,7 +57,7 @@ PositionView positions_at(const Map& particles, const ParticleTable& table) {
   return positions;
 }
 
-std::shared_ptr<const TrialSpace> trial_space(const ReductionFile::Rows& rows, const TimeWindow& window,
+std::shared_ptr<const TrialSpace> trial_space(const BasisRows& rows, const TimeWindow& window,
                                               const std::shared_ptr<const TrialSpace>& previous = nullptr) {
   return std::make_shared<AffineBasis>(rows.reference, dense::leading_columns(rows.modes, window.first + window.size),
                                        window.first, previous);
@@ -71,6 +71,7 @@ HyperReduced::Opened::Opened(const Context& run)
       held(),
       alone(run.communicator->split(run.communicator->getRank(), 0)) {
   file.require_time(run.input);
+  file.require_end(run.input);
 }
 
 Teuchos::RCP<const Communicator> HyperReduced::Opened::sharing(std::size_t sources) const {
@@ -92,8 +93,7 @@ HyperReduced::Made HyperReduced::made_of(const Opened& opened, const Meshes& mes
   made.parts.particles = dealt(opened.held, opened.context.communicator);
   made.parts.positions = positions_at(*made.parts.particles, opened.held);
   made.parts.reduction = reduction.fingerprint();
-  const ReductionFile::Rows held =
-      rows_at(*made.parts.particles, {&opened.held}, reduction.coordinates(), opened.name());
+  const BasisRows held = rows_at(*made.parts.particles, {&opened.held}, reduction.coordinates(), opened.name());
   std::shared_ptr<const TrialSpace> held_before;
   // The hardest window speaks for all.
   std::size_t residual_rank = 0, sampled = 0, sources = 0;

@@ -36,7 +36,7 @@ class HyperReduced : public PetrovGalerkin {
   /// What a method evaluates in a window.
   struct Mesh {
     std::shared_ptr<Model> model;  ///< its rows are the sample mesh's
-    ReductionFile::Rows basis;     ///< on the model's sources, of this window and those before it
+    BasisRows basis;               ///< on the model's sources, of this window and those before it
     std::size_t sources;           ///< over all ranks
   };
   using Meshes = std::function<Mesh(std::size_t window, const SampleMesh& mesh)>;

@@ -160,18 +160,16 @@ double Projection::reduced_residual(const StepResidual& residual, ConstVectorVie
   trial_->state(x, state_);
   model_->rate(state_, residual.time, f);
   form_residual(residual, state_, f, residual_);
-  if (observer_) observer_(residual_);
   project(residual_, g_);
   const double norm = norm_of(g_);
-  if (!std::isfinite(norm)) throw_diverged(not_finite, residual.time, f, residual_);
+  if (observer_ && std::isfinite(norm)) observer_(residual_);
   return norm;
 }
 
 double Projection::search_line(const StepResidual& residual, VectorView x, VectorView f, double norm, double next,
                                SolveReport& report) {
-  constexpr int halvings = 8;
   double fraction = 1.0;
-  for (int k = 0; k < halvings && !(next < norm); ++k) {
+  for (int k = 0; k < NewtonSettings::halvings && !(next < norm); ++k) {
     fraction *= 0.5;
     move(x, fraction);
     next = reduced_residual(residual, x, f);
@@ -190,18 +188,25 @@ SolveReport Projection::solve(const StepResidual& residual, VectorView x, Vector
 
   SolveReport report;
   double norm = reduced_residual(residual, x, f);
+  if (!std::isfinite(norm)) throw_diverged(not_finite, residual.time, f, residual_);
   report.residuals = 1;
   report.first_norm = norm;
   const double goal = settings_.tolerance * norm;
-  while (norm > goal && report.iterations < settings_.iterations) {
+  bool descending = true;
+  while (norm > goal && report.iterations < settings_.iterations && descending) {
     if (when_factored_ == Factors::every_iteration) factor(residual.time);
     copy(g_, step_);
     factors_.solve(step_);
     move(x, -1.0);
     ++report.iterations;
-    const double next = reduced_residual(residual, x, f);
+    double next = reduced_residual(residual, x, f);
     ++report.residuals;
-    norm = settings_.line_search ? search_line(residual, x, f, norm, next, report) : next;
+    if (settings_.line_search) {
+      next = search_line(residual, x, f, norm, next, report);
+      descending = next < norm;
+    }
+    norm = next;
+    if (!std::isfinite(norm)) throw_diverged(not_finite, residual.time, f, residual_);
     if (norm > growth_limit * report.first_norm) {
       throw_diverged(grown, residual.time, f, residual_);
     }

@@ -87,14 +87,16 @@ class Projection {
   /// Ψ and the factors of Ψᵀ J̃Φ, from J̃Φ.
   void factor(double time);
   bool linearised_for(double alpha, double gamma) const;
-  /// Evaluates state and rate for x; f: rows × components. Fills residual_ and g_ = Ψᵀr; returns ‖g_‖.
+  /// Evaluates state and rate for x; f: rows × components. Fills residual_ and g_ = Ψᵀr; returns ‖g_‖, which may not be
+  /// finite.
   double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
   void project(const VectorView& rows, const VectorView& g);
   /// û ← û + scale · step_.
   void move(VectorView x, double scale) const;
   /// The step of an explicit scheme in an affine trial space, linear in û: one update, one evaluation of f.
   SolveReport solve_explicit(const StepResidual& residual, VectorView x, VectorView u, VectorView f);
-  /// Halves the update until ‖Ψᵀr‖ falls below `norm`; x already holds x − step_. Returns the new norm.
+  /// Halves the update until ‖Ψᵀr‖ falls below `norm`, NewtonSettings::halvings times at most; x already holds x −
+  /// step_. Returns the new norm.
   double search_line(const StepResidual& residual, VectorView x, VectorView f, double norm, double next,
                      SolveReport& report);
   [[noreturn]] void throw_diverged(const std::string& what, double time, ConstVectorView f,

@@ -82,8 +82,6 @@ class PointMatrices {
         columns_(columns),
         entries_("kiln::rom::matrices of points", points, rows * columns) {}
 
-  std::size_t rows() const { return rows_; }
-  std::size_t columns() const { return columns_; }
   void put(std::size_t point, ConstMatrixView matrix) {
     for (std::size_t k = 0; k < columns_; ++k) {
       for (std::size_t i = 0; i < rows_; ++i) entries_(point, k * rows_ + i) = matrix(i, k);

@@ -47,7 +47,7 @@ class PointProjection {
   void reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history, ConstMatrixView f);
   /// x ← x − (ΨᵀJ̃Φ)⁻¹ g_ of the points that iterate.
   void update(MatrixView x);
-  /// Leaves points behind whose residual is not finite, and at least `growth` times as large as at first.
+  /// Leaves points behind whose residual is not finite or has grown past what counts as divergence.
   void watch(const StepResidual& residual, MatrixView x, ConstMatrixView f, std::vector<Point>& points);
   void leave_behind(std::size_t point, const char* what, double time, MatrixView x, ConstMatrixView f, Point& outcome);
 

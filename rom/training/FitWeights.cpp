@@ -7,7 +7,6 @@
 
 #include "framework/model/Model.hpp"
 #include "rom/clustering/Points.hpp"
-#include "rom/files/ReductionFile.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 
 namespace kiln {
@@ -23,7 +22,7 @@ constexpr double small = 0.05;
 MatrixView rates(const Model& model, const std::vector<const ParticleTable*>& tables,
                  const std::vector<VectorView>& moments) {
   const std::size_t columns = tables.front()->modes.shape[1] / tables.front()->components;
-  const ReductionFile::Rows basis = rows_at(*model.sources(), tables, columns, "source clustering");
+  const BasisRows basis = rows_at(*model.sources(), tables, columns, "source clustering");
   const VectorView state("kiln::rom::state", basis.reference.extent(0));
   const std::size_t rows = local_size(*model.rows()) * tables.front()->components;
   MatrixView result("kiln::rom::rates at moments", rows, moments.size());

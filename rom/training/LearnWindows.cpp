@@ -121,6 +121,14 @@ void LearnWindows::add_clusters(std::vector<WindowReduction>& windows, const std
 }
 
 void LearnWindows::check(const WindowReduction& window) {
+  const int coordinates = window.basis.truncation.rank, residual_modes = window.residual_basis.truncation.rank;
+  if (residual_modes < coordinates) {
+    warnings_.push_back(fmt::format(
+        "the residuals of the window that ends at {:g} s hold only {} independent modes, which do not determine the "
+        "coordinates of its {} basis vectors: GNAT has no single solution there; take fewer basis vectors, longer "
+        "windows or a larger snapshots.hold",
+        window.end, residual_modes, coordinates));
+  }
   if (window.gappy_operator.smallest_singular_value >= small_sigma) return;
   warnings_.push_back(fmt::format(
       "the smallest singular value of PΦ_r is {:.2e} in the window that ends at {:g} s: the hyper-reduced "

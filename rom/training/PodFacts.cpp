@@ -8,7 +8,7 @@ nlohmann::json facts_of(const Pod& pod) {
   return {{"rank", pod.truncation.rank},
           {"energy", pod.truncation.energy},
           {"independent", pod.truncation.independent},
-          {"snapshots", pod.singular_values.size()},
+          {"snapshots", pod.snapshots},
           {"largest_singular_value", pod.singular_values.front()},
           {"last_singular_value_kept", pod.singular_values[pod.truncation.rank - 1]},
           {"orthogonality", pod.orthogonality},

@@ -8,7 +8,7 @@ namespace kiln {
 Specification WindowSettings::specification() {
   Specification s;
   s.integer("count", "number of windows, of equal length").at_least(1).optional();
-  s.integer("steps", "steps of each window").at_least(1).optional();
+  s.integer("steps", "steps of each window, up to whole snapshots").at_least(1).optional();
   s.real("error", "largest error of a queried particle: windows are as few as keep below it with basis.rank modes each")
       .above(0)
       .below(1)

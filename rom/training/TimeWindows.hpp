@@ -13,7 +13,7 @@ namespace kiln {
 /// The block `reduction.windows`: into which time windows a training cuts the run.
 struct WindowSettings {
   std::optional<int> count;     ///< that many, of equal length
-  std::optional<int> steps;     ///< of that many steps each; the last may be shorter
+  std::optional<int> steps;     ///< of that many steps each, up to whole snapshots; the last may be shorter
   std::optional<double> error;  ///< as few as hold this error with the basis rank asked for
   static Specification specification();
   /// `list` may be null: one window.

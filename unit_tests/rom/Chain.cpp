@@ -289,6 +289,9 @@ Teuchos::ParameterList input_of(const Case& values) {
     basis.set("rank", std::string(name) == "basis" ? values.basis_rank : values.residual_rank);
     basis.set("energy_of", std::string("squared singular values"));
     basis.set("algorithm", values.algorithm);
+    if (std::string(name) == "residual_basis" && !values.residual_algorithm.empty()) {
+      basis.set("algorithm", values.residual_algorithm);
+    }
   }
   Teuchos::ParameterList& sampling = reduction.sublist("sampling");
   sampling.setName("reduction.sampling");

@@ -183,6 +183,7 @@ TEST(Pod, RandomisedTruncatesADecayingSpectrum) {
   for (int k = 0; k < 100; ++k) known.sigma.push_back(std::pow(0.8, k));
   const Pod result = pod(known.snapshots(*world()), settings("randomised", 12), *world());
   ASSERT_EQ(result.modes.extent(1), 12u);
+  EXPECT_NEAR(result.truncation.energy, 1.0 - std::pow(0.64, 12), 1e-9) << "of what it has not seen too";
   const int begin = known.first(*world(), world()->getRank());
   for (int k = 0; k < 12; ++k) {
     EXPECT_NEAR(result.singular_values[k], known.sigma[k], 1e-8 * known.sigma[k]);
@@ -229,6 +230,13 @@ TEST(Snapshots, TellWhatALimitTooLowLeavesOut) {
   EXPECT_LT(some.discarded_energy(), 0.1);
 }
 
+TEST(Pod, RandomisedTellsOfAllSnapshotsHowFewAreIndependent) {
+  const Known known{200, 60, {4.0, 3.0, 2.0}};
+  EXPECT_EQ(message([&] { pod(known.snapshots(*world()), settings("randomised", 5), *world()); }),
+            "reduction.basis.rank: 5 basis vectors are asked for, but of 60 snapshots only 3 are independent (singular "
+            "values above 1.3e-13 of the largest); expected a rank of at most 3");
+}
+
 TEST(Pod, ZeroSnapshotsAreRefused) {
   const Known known{20, 4, {0.0}};
   EXPECT_EQ(message([&] { pod(known.snapshots(*world()), settings("gram", 1), *world()); }),
@@ -241,7 +249,7 @@ TEST(Truncation, FollowsItsRules) {
   const auto rank = [&](double energy, PodSettings::EnergyOf of) {
     s.energy = energy;
     s.energy_of = of;
-    return truncate(sigma, s).rank;
+    return truncate(sigma, sigma.size(), s).rank;
   };
   using Of = PodSettings::EnergyOf;
   EXPECT_EQ(rank(0.5, Of::squared_singular_values), 1);  // 9/14 = 0.643
@@ -252,14 +260,14 @@ TEST(Truncation, FollowsItsRules) {
   EXPECT_EQ(rank(0.501, Of::singular_values), 2);
   EXPECT_EQ(rank(0.84, Of::singular_values), 3);  // 5/6 = 0.833
   EXPECT_EQ(rank(1.0, Of::squared_singular_values), 3);
-  EXPECT_EQ(truncate(sigma, s).independent, 3);
+  EXPECT_EQ(truncate(sigma, sigma.size(), s).independent, 3);
   s.algorithm = PodSettings::Algorithm::tsqr;
-  EXPECT_EQ(truncate(sigma, s).independent, 4);
+  EXPECT_EQ(truncate(sigma, sigma.size(), s).independent, 4);
   s.energy.reset();
   s.rank = 2;
-  EXPECT_NEAR(truncate(sigma, s).energy, 13.0 / 14.0, 1e-15);
+  EXPECT_NEAR(truncate(sigma, sigma.size(), s).energy, 13.0 / 14.0, 1e-15);
   s.at_least = 3;
-  EXPECT_EQ(truncate(sigma, s).rank, 2);  // asked for by number
+  EXPECT_EQ(truncate(sigma, sigma.size(), s).rank, 2);  // asked for by number
   s.rank.reset();
   EXPECT_EQ(rank(0.5, Of::squared_singular_values), 3);
   s.at_least = 9;

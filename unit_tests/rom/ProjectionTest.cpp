@@ -3,6 +3,7 @@
 #include <Tpetra_Map.hpp>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "Projections.hpp"
@@ -291,6 +292,39 @@ TEST(PetrovGalerkin, LineSearchTakesTheSameSolution) {
                                                {{1.0, 0, 8}}, test::lspg_test);
   PetrovGalerkin method(std::move(parts), settings);
   EXPECT_LT(largest_difference(march(method, values), plain), 1e-10);
+}
+
+/// A chain that knows no rate above a wall, as a material knows none beyond its table.
+class Walled : public test::Chain {
+ public:
+  using Chain::Chain;
+  void rate(ConstVectorView u, double time, VectorView f) const override {
+    Chain::rate(u, time, f);
+    constexpr double wall = 50.0;
+    for (std::size_t i = 0; i < f.extent(0); ++i) {
+      if (u(i) > wall) f(i) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+};
+
+TEST(PetrovGalerkin, LineSearchTurnsBackFromWhereThereIsNoRate) {
+  Case values;
+  values.steps = 1;
+  values.step = 1.0;
+  values.power = 4000.0;
+  values.iterations = 100;
+  const std::vector<double> unwalled = march(*of_kind("galerkin", values, 8, world()), values);
+  const auto march_walled = [&values](bool line_search) {
+    const auto model = std::make_shared<Walled>(test::input_of(values).sublist("model"), Model::Context{world()});
+    NewtonSettings settings = newton_of(values);
+    settings.line_search = line_search;
+    PetrovGalerkin method(test::parts_of(model, values, test::cosines(*model->sources(), 1, values.count, 8),
+                                         {{1.0, 0, 8}}, test::galerkin_test),
+                          settings);
+    return march(method, values);
+  };
+  EXPECT_THROW(march_walled(false), DivergenceError);
+  EXPECT_LT(largest_difference(march_walled(true), unwalled), 1e-8);
 }
 
 }  // namespace

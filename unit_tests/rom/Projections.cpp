@@ -12,9 +12,9 @@
 namespace kiln::test {
 MatrixView cosines(const Map& map, int components, int all_entries, int modes) {
   MatrixView result("cosines", local_size(map) * components, modes);
-  for (std::size_t i = 0; i < local_size(map); ++i) {
+  for (LocalIndex i = 0; i < local_size(map); ++i) {
     for (int c = 0; c < components; ++c) {
-      const auto entry = map.getGlobalElement(static_cast<LocalIndex>(i)) * components + c;
+      const auto entry = map.getGlobalElement(i) * components + c;
       for (int k = 0; k < modes; ++k) {
         result(i * components + c, k) = std::sqrt((k == 0 ? 1.0 : 2.0) / all_entries) *
                                         std::cos(M_PI * (static_cast<double>(entry) + 0.5) * k / all_entries);
@@ -55,7 +55,7 @@ std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const 
   // PΦ_r of all ranks, in ascending order of ids, then this rank's columns of A.
   const Map& rows = *model.rows();
   std::vector<double> marks(values.count, 0.0);
-  for (std::size_t i = 0; i < local_size(rows); ++i) marks[rows.getGlobalElement(static_cast<LocalIndex>(i))] = 1.0;
+  for (LocalIndex i = 0; i < local_size(rows); ++i) marks[rows.getGlobalElement(i)] = 1.0;
   dense::sum_over_ranks(*rows.getComm(), marks.data(), marks.size());
   std::vector<GlobalIndex> sampled;
   for (int id = 0; id < values.count; ++id) {
@@ -64,8 +64,8 @@ std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const 
   const Map everywhere(sampled.size(), Teuchos::arrayViewFromVector(sampled), 0, self());
   const GappyOperator gappy = gappy_operator(cosines(everywhere, components, all, residual_modes), "sampling");
   MatrixView mine("A", residual_modes, local_size(rows) * components);
-  for (std::size_t i = 0; i < local_size(rows); ++i) {
-    const LocalIndex place = everywhere.getLocalElement(rows.getGlobalElement(static_cast<LocalIndex>(i)));
+  for (LocalIndex i = 0; i < local_size(rows); ++i) {
+    const LocalIndex place = everywhere.getLocalElement(rows.getGlobalElement(i));
     for (int c = 0; c < components; ++c) {
       for (int k = 0; k < residual_modes; ++k) mine(k, i * components + c) = gappy.matrix(k, place * components + c);
     }
@@ -84,9 +84,9 @@ std::vector<double> gathered_state(const Method& method, ConstVectorView x) {
   VectorView u("state", local_size(map) * components);
   method.state(x, u);
   std::vector<double> all((map.getMaxAllGlobalIndex() + 1) * components, 0.0);
-  for (std::size_t i = 0; i < local_size(map); ++i) {
+  for (LocalIndex i = 0; i < local_size(map); ++i) {
     for (int c = 0; c < components; ++c) {
-      all[map.getGlobalElement(static_cast<LocalIndex>(i)) * components + c] = u(i * components + c);
+      all[map.getGlobalElement(i) * components + c] = u(i * components + c);
     }
   }
   dense::sum_over_ranks(*map.getComm(), all.data(), all.size());

@@ -285,6 +285,19 @@ TEST(WindowTraining, IsTheSameOnAnyNumberOfRanks) {
   }
 }
 
+/// The finer decomposition finds more modes in the states than the coarser one in the residuals.
+TEST(WindowTraining, WarnsOfFewerResidualModesThanCoordinates) {
+  const TestFolder folder;
+  Case values = training_case(folder.path().string());
+  values.windows = 2;
+  values.algorithm = "tsqr";
+  values.residual_algorithm = "gram";
+  values.basis_rank = values.residual_rank = 19;
+  const nlohmann::json facts = train(values, world()).section("training");
+  ASSERT_LT(facts["residual_basis"][0]["rank"], facts["basis"][0]["rank"]);
+  EXPECT_NE(facts["warnings"].dump().find("do not determine the coordinates"), std::string::npos) << facts["warnings"];
+}
+
 TEST(WindowedGnat, TakesNewValuesOfLiveParametersInEveryWindow) {
   const TestFolder folder;
   Case values = training_case(folder.path().string());

@@ -183,7 +183,7 @@ TEST(FullOrder, ALineSearchWithoutDescentEndsTheStep) {
   const SolveReport report = time_scheme->advance(x, 0.1);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 1);
-  EXPECT_EQ(report.residuals, 2 + FullOrder::halvings);
+  EXPECT_EQ(report.residuals, 2 + NewtonSettings::halvings);
 }
 
 TEST(FullOrder, AnExplicitSchemeSolvesNothing) {

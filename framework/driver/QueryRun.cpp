@@ -1,4 +1,4 @@
-#include "framework/queries/QueryRun.hpp"
+#include "framework/driver/QueryRun.hpp"
 
 #include <fmt/format.h>
 
@@ -178,7 +178,9 @@ const QueryAnswers& QueryRun::answer() {
     }
   } catch (const Stopped&) {
     stopped = StopRequest::name();
-  } catch (const std::exception& error) {
+  } catch (const InputError& error) {
+    refused = error.what();
+  } catch (const NotOffered& error) {
     refused = error.what();
   }
   for (const std::string& name : gathered(stopped, *communicator_)) {

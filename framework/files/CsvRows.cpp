@@ -1,0 +1,74 @@
+#include "framework/files/CsvRows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/base/Error.hpp"
+
+namespace kiln {
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The text of a cell that begins at `at` with a quote; `at` goes to what follows the closing one.
+std::string quoted(std::string_view line, std::size_t& at) {
+  std::string cell;
+  for (++at; at < line.size(); ++at) {
+    if (line[at] == '"') {
+      const bool is_doubled = at + 1 < line.size() && line[at + 1] == '"';
+      if (!is_doubled) {
+        ++at;
+        break;
+      }
+      ++at;
+    }
+    cell += line[at];
+  }
+  return cell;
+}
+
+void split(std::string_view line, std::vector<std::string>& cells) {
+  cells.clear();
+  for (std::size_t at = 0;;) {
+    at = std::min(line.find_first_not_of(blanks, at), line.size());
+    std::string cell;
+    if (at < line.size() && line[at] == '"') cell = quoted(line, at);
+    const std::size_t comma = std::min(line.find(',', at), line.size());
+    cell += trimmed(line.substr(at, comma - at));
+    cells.push_back(std::move(cell));
+    if (comma == line.size()) return;
+    at = comma + 1;
+  }
+}
+
+}  // namespace
+
+void for_each_csv_row(const std::string& file, std::string_view text, std::size_t longest,
+                      const std::function<void(int line, const std::vector<std::string>& cells)>& row) {
+  if (text.substr(0, byte_order_mark.size()) == byte_order_mark) text.remove_prefix(byte_order_mark.size());
+  std::vector<std::string> cells;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = trimmed(text.substr(at, end - at));
+    at = end + 1;
+    ++number;
+    if (line.size() > longest) {
+      throw FileError(file, fmt::format("line {}", number), fmt::format("has {} characters", line.size()),
+                      "a row of a table, separated by commas");
+    }
+    if (line.empty() || line.front() == '#') continue;
+    split(line, cells);
+    row(number, cells);
+  }
+}
+
+}  // namespace kiln
