@@ -185,8 +185,9 @@ class MessagesTest(KilnTest):
 
     def test_a_heat_source_that_heats_nothing(self):
         rows = [f"{i % 3 * 1e-4},{i // 3 % 3 * 1e-4},{i // 9 * 1e-4}\n" for i in range(27)]
-        (self.folder / "particles.csv").write_text("x,y,z\n" + "".join(rows))
-        particles = "model.particles={type: file, path: particles.csv, spacing: 0.1 mm, volume: 0.027 mm^3}"
+        table = self.folder / "particles.csv"
+        table.write_text("x,y,z\n" + "".join(rows))
+        particles = f"model.particles={{type: file, path: {table}, spacing: 0.1 mm, volume: 0.027 mm^3}}"
         words = ("model.heat_source", "a gaussian beam heats no particle", "column 'area'", "heat_source: none")
         self.wrong("check", SMALL, "--set", particles, lines=1, words=words, ranks=(1, 2))
         self.assertEqual(

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "framework/base/Error.hpp"
 #include "physics/sph/Material.hpp"
@@ -43,9 +44,13 @@ std::vector<double> tabulated(const Material& material, double from, double to, 
 }  // namespace
 
 TableRange TableRange::of(const Teuchos::ParameterList& model) {
-  if (!model.isSublist("table")) return {};
+  TableRange range;
+  if (!model.isSublist("table")) return range;
   const Teuchos::ParameterList& table = model.sublist("table");
-  return {table.get<double>("from"), table.get<double>("to"), table.get<double>("step")};
+  for (const auto& [key, value] : {std::pair{"from", &range.from}, {"to", &range.to}, {"step", &range.step}}) {
+    if (table.isParameter(key)) *value = table.get<double>(key);
+  }
+  return range;
 }
 
 double TableRange::intervals() const { return std::ceil((to - from) / step * (1.0 - 1e-12)); }

@@ -289,9 +289,6 @@ Teuchos::ParameterList input_of(const Case& values) {
     basis.set("rank", std::string(name) == "basis" ? values.basis_rank : values.residual_rank);
     basis.set("energy_of", std::string("squared singular values"));
     basis.set("algorithm", values.algorithm);
-    if (std::string(name) == "residual_basis" && !values.residual_algorithm.empty()) {
-      basis.set("algorithm", values.residual_algorithm);
-    }
   }
   Teuchos::ParameterList& sampling = reduction.sublist("sampling");
   sampling.setName("reduction.sampling");
@@ -312,6 +309,7 @@ Teuchos::ParameterList input_of(const Case& values) {
     }
   }
   reduction.sublist("snapshots").set("every", values.snapshots_every);
+  if (values.snapshots_hold > 0) reduction.sublist("snapshots").set("hold", values.snapshots_hold);
   if (values.windows > 0) reduction.sublist("windows").set("count", values.windows);
   if (values.window_error > 0.0) reduction.sublist("windows").set("error", values.window_error);
   for (const auto& [key, powers] : {std::pair{"train_on", values.train_on}, std::pair{"try_on", values.try_on}}) {

@@ -95,8 +95,8 @@ struct Case {
   std::string jacobian = "matrix free";
   int basis_rank = 10, residual_rank = 12, samples = 24;
   int snapshots_every = 1;
+  int snapshots_hold = 0;  ///< 0: all
   std::string algorithm = "gram";
-  std::string residual_algorithm = "";     ///< empty: the same
   std::string clustering = "";             ///< empty: the block is left out
   int clusters = 2;                        ///< of type "per row"
   std::string cluster_weights = "fitted";  ///< likewise

@@ -106,6 +106,7 @@ std::string place(const HeatCase& c) {
 Teuchos::ParameterList from_file(const std::string& file, const std::function<bool(int)>& keep,
                                  const std::function<double()>& move) {
   HeatCase heat_case;
+  heat_case.heat_source = HeatCase::no_source();
   Teuchos::ParameterList list = heat_case.list();
   const auto communicator = Tpetra::getDefaultComm();
   if (communicator->getRank() == 0) {
