@@ -288,8 +288,8 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   if (!options.quiet) {
     assembly->add(std::make_unique<ProgressObserver>(type, assembly->span().first_step, *communicator));
   }
-  remove_report(folder.path(), *communicator);
   assembly->begin();
+  remove_report(folder.path(), *communicator);
   const Seconds setup = elapsed(total, *communicator);
 
   RunReport report;

@@ -21,10 +21,6 @@ void use_one_blas_thread() {
   if (set_threads != nullptr) set_threads(1);
 }
 
-/// Where mpirun did not start it, Open MPI would start a server beside the program, for one that spawns others, and
-/// wait for it: a third of the time of `kiln check`. Kiln spawns none. The environment may say otherwise.
-void start_alone() { setenv("OMPI_MCA_ess_singleton_isolated", "1", 0); }
-
 /// Without HDF5's farewell.
 [[noreturn]] void leave_at_once(int status) {
   std::fflush(nullptr);
@@ -36,7 +32,6 @@ void start_alone() { setenv("OMPI_MCA_ess_singleton_isolated", "1", 0); }
 
 int main(int argc, char** argv) {
   use_one_blas_thread();
-  start_alone();
   // A limit on a file's size is told like a full disk, not by the signal's death.
   std::signal(SIGXFSZ, SIG_IGN);
   // The command line is Kiln's alone: Kokkos would answer --help with its own page and take unprefixed flags of its

@@ -13,7 +13,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
-sys.path.insert(0, str(REPOSITORY / "framework" / "report"))
+sys.path.insert(0, str(REPOSITORY / "regression" / "comparison"))
 
 import smaller_study
 from page import Page
