@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <Tpetra_Map.hpp>
 #include <cmath>
+#include <fstream>
+#include <new>
 #include <numeric>
 
 #include "Chain.hpp"
@@ -216,6 +220,52 @@ TEST(Snapshots, WithALimitGiveThePodOfAll) {
     for (std::size_t i = 0; i < exact.modes.extent(0); ++i) cosine_of_angle += exact.modes(i, k) * merged.modes(i, k);
     dense::sum_over_ranks(*world(), &cosine_of_angle, 1);
     EXPECT_NEAR(std::abs(cosine_of_angle), 1.0, 1e-8) << k;
+  }
+}
+
+/// Lets this process take so many bytes more than it has, while it stands.
+class MemoryCap {
+ public:
+  explicit MemoryCap(rlim_t more) {
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    getrlimit(RLIMIT_AS, &before_);
+    const rlimit capped{pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_AS, &capped), 0);
+  }
+  MemoryCap(const MemoryCap&) = delete;
+  MemoryCap& operator=(const MemoryCap&) = delete;
+  ~MemoryCap() { setrlimit(RLIMIT_AS, &before_); }
+
+ private:
+  rlimit before_;
+};
+
+/// 96 MiB of snapshots where 32 MiB may be taken.
+TEST(Snapshots, WithALimitFitInAThirdOfTheirOwnSize) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a sanitizer takes memory of its own";
+#endif
+  constexpr std::size_t rows = 16384, columns = 768;
+  VectorView column("column", rows);
+  const auto feed = [&column](Snapshots& snapshots) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      for (std::size_t i = 0; i < rows; ++i) column(i) = cosine(static_cast<int>(i), static_cast<int>(j % 5) + 1, rows);
+      snapshots.append(column);
+    }
+  };
+  Snapshots all(rows), some(rows);
+  some.limit(64, world());
+  const MemoryCap cap(rlim_t{32} << 20);
+  EXPECT_THROW(feed(all), std::bad_alloc);
+  all.clear();
+  feed(some);
+  EXPECT_EQ(some.appended(), columns);
+  EXPECT_LT(some.discarded_energy(), 1e-20);
+  const Pod result = pod(some, settings("tsqr", 5), *world());
+  // Five orthogonal columns, each of them so often.
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_NEAR(result.singular_values[k] / result.singular_values[0], 1.0, 0.01);
   }
 }
 
