@@ -1,6 +1,7 @@
 /* Preloaded into a run, kills it at a moment of the test's choice, however fast the run is:
    KILN_KILL_AT=checkpoint.h5:N  when it is about to put its Nth file of that name in place (1 is the first);
-   KILN_KILL_IN=checkpoint.h5:N  in the middle of the Nth piece that it writes into such files. */
+   KILN_KILL_IN=checkpoint.h5:N  in the middle of the Nth piece that it writes into such files.
+   KILN_STOP_AT=checkpoint.h5:N  sends it KILN_STOP_SIGNAL, a number, as KILN_KILL_AT would kill it. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <signal.h>
@@ -26,8 +27,9 @@ static int is_due(const char* variable, const char* path, const char* suffix, in
 }
 
 int rename(const char* from, const char* to) {
-  static int count = 0;
-  if (is_due("KILN_KILL_AT", to, "", &count)) raise(SIGKILL);
+  static int kill_count = 0, stop_count = 0;
+  if (is_due("KILN_KILL_AT", to, "", &kill_count)) raise(SIGKILL);
+  if (is_due("KILN_STOP_AT", to, "", &stop_count)) raise(atoi(getenv("KILN_STOP_SIGNAL")));
   int (*system_rename)(const char*, const char*) = (int (*)(const char*, const char*))dlsym(RTLD_NEXT, "rename");
   return system_rename(from, to);
 }

@@ -16,7 +16,7 @@
 namespace kiln {
 namespace {
 
-constexpr long long format = 3;
+constexpr long long format = 4;
 
 /// For HDF5's own account of what a checkpoint holds.
 constexpr std::uint64_t smallest_room = 65536;

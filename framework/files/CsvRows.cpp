@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "framework/base/Error.hpp"
 
@@ -18,33 +19,34 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// The text of a cell that begins at `at` with a quote; `at` goes to what follows the closing one.
-std::string quoted(std::string_view line, std::size_t& at) {
+/// The text of a cell that begins at `at` with a quote; `at` goes to what follows the closing one. Nothing: none
+/// closes.
+std::optional<std::string> quoted(std::string_view line, std::size_t& at) {
   std::string cell;
   for (++at; at < line.size(); ++at) {
     if (line[at] == '"') {
-      const bool is_doubled = at + 1 < line.size() && line[at + 1] == '"';
-      if (!is_doubled) {
-        ++at;
-        break;
-      }
       ++at;
+      const bool is_doubled = at < line.size() && line[at] == '"';
+      if (!is_doubled) return cell;
     }
     cell += line[at];
   }
-  return cell;
+  return std::nullopt;
 }
 
-void split(std::string_view line, std::vector<std::string>& cells) {
+/// Returns what is wrong with the line; empty: nothing.
+const char* split(std::string_view line, std::vector<std::string>& cells) {
   cells.clear();
   for (std::size_t at = 0;;) {
     at = std::min(line.find_first_not_of(blanks, at), line.size());
-    std::string cell;
-    if (at < line.size() && line[at] == '"') cell = quoted(line, at);
+    const bool has_quotes = at < line.size() && line[at] == '"';
+    std::optional<std::string> cell;
+    if (has_quotes && !(cell = quoted(line, at))) return "has a quote that nothing closes";
     const std::size_t comma = std::min(line.find(',', at), line.size());
-    cell += trimmed(line.substr(at, comma - at));
-    cells.push_back(std::move(cell));
-    if (comma == line.size()) return;
+    const std::string_view rest = trimmed(line.substr(at, comma - at));
+    if (has_quotes && !rest.empty()) return "has text behind a closing quote";
+    cells.push_back(cell ? std::move(*cell) : std::string(rest));
+    if (comma == line.size()) return "";
     at = comma + 1;
   }
 }
@@ -66,7 +68,9 @@ void for_each_csv_row(const std::string& file, std::string_view text, std::size_
                       "a row of a table, separated by commas");
     }
     if (line.empty() || line.front() == '#') continue;
-    split(line, cells);
+    if (const std::string trouble = split(line, cells); !trouble.empty()) {
+      throw FileError(file, fmt::format("line {}", number), trouble, "cells between commas, whole ones in quotes");
+    }
     row(number, cells);
   }
 }

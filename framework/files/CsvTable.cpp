@@ -24,6 +24,7 @@ std::string text_of(const std::filesystem::path& path) {
   if (!file) throw FileError(path.string(), "", std::string("cannot be read: ") + std::strerror(errno));
   std::ostringstream text;
   text << file.rdbuf();
+  if (file.bad()) throw FileError(path.string(), "", "cannot be read to its end");
   return text.str();
 }
 

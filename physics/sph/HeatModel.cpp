@@ -125,11 +125,11 @@ HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context)
 
 HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context, const MaterialTable& table)
     : HeatModel(list, table, domain_of(list, context, table)) {
-  const Teuchos::ParameterList& source = list.sublist("heat_source");
   const int heated = static_cast<int>(heated_.extent(0));
   int most = 0;
   Teuchos::reduceAll(*context.communicator, Teuchos::REDUCE_MAX, 1, &heated, &most);
-  if (most == 0 && source.get<std::string>("type") != "none") {
+  if (most == 0 && heat_source_->heats()) {
+    const Teuchos::ParameterList& source = list.sublist("heat_source");
     throw InputError(source.name(),
                      fmt::format("a {} heats no particle: none has a heated area", source.get<std::string>("type")),
                      "heated areas, as a column 'area' of a particle file, or heat_source: none");

@@ -51,6 +51,7 @@ class NoHeatSource final : public HeatSource {
   static Specification specification() { return {}; }
   NoHeatSource(const Teuchos::ParameterList&, const Context&) {}
   void flux(double, ConstPositionView, VectorView q) const override { Kokkos::deep_copy(ExecutionSpace(), q, 0.0); }
+  bool heats() const override { return false; }
 };
 
 KILN_REGISTER(HeatSource, UniformFlux, "uniform flux", "the same flux everywhere on the heated surface");

@@ -33,6 +33,9 @@ class HeatSource {
   /// time it is asked once.
   virtual void flux(double time, ConstPositionView positions, VectorView q) const = 0;
 
+  /// Whether heat may enter at all, for some values of the parameters.
+  virtual bool heats() const { return true; }
+
   /// Gives the live parameters their values at a point.
   using SetPoint = std::function<void(std::size_t point)>;
   /// This source at `count` points, at least one. It must outlive the result.

@@ -35,7 +35,9 @@ class VortexModel final : public Model, public PairwiseModel {
 
   Teuchos::RCP<const Map> rows() const override { return rows_; }
   Teuchos::RCP<const Map> sources() const override { return sources_; }
-  std::vector<Field> fields() const override { return {{"x", "m", true}, {"y", "m", true}}; }
+  std::vector<Field> fields() const override {
+    return {{"x", "m", /*origin_is_free=*/true}, {"y", "m", /*origin_is_free=*/true}};
+  }
   void initial_state(VectorView u) const override;
   void rate(ConstVectorView u, double time, VectorView f) const override;
   /// At t = 0; z = 0.

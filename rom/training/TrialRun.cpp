@@ -16,21 +16,22 @@ namespace {
 /// `width`: values a step, those of one particle after the other.
 void compare_queries(const std::vector<double>& exact, const std::vector<double>& approximate, std::size_t width,
                      const std::vector<Field>& fields, TrialErrors& errors) {
-  double worst = 0.0, worst_of_free = 0.0, rise = 0.0;
+  double worst = 0.0, rise = 0.0, worst_of_free = 0.0, rise_of_free = 0.0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const double difference = std::abs(approximate[i] - exact[i]);
     const bool is_free = fields[i % fields.size()].origin_is_free;
+    const double risen = std::abs(exact[i] - exact[i % width]);
     worst = std::max(worst, difference);
-    if (is_free) worst_of_free = std::max(worst_of_free, difference);
-    rise = std::max(rise, std::abs(exact[i] - exact[i % width]));
-    if (!is_free && exact[i] != 0.0) {
+    rise = std::max(rise, risen);
+    if (is_free) {
+      worst_of_free = std::max(worst_of_free, difference);
+      rise_of_free = std::max(rise_of_free, risen);
+    } else if (exact[i] != 0.0) {
       errors.worst_query = std::max(errors.worst_query, difference / std::abs(exact[i]));
     }
   }
-  if (rise > 0.0) {
-    errors.worst_query_of_rise = worst / rise;
-    errors.worst_query = std::max(errors.worst_query, worst_of_free / rise);
-  }
+  if (rise > 0.0) errors.worst_query_of_rise = worst / rise;
+  if (rise_of_free > 0.0) errors.worst_query = std::max(errors.worst_query, worst_of_free / rise_of_free);
 }
 
 double field_error(const TrialReference& reference, const UnknownRecord& record, PetrovGalerkin& full_size,

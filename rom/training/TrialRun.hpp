@@ -37,7 +37,8 @@ class QueryRecord : public Observer {
 
 /// How far a reduced run is from the full-order run it was trained on.
 struct TrialErrors {
-  /// Largest |û − u|/|u| of any queried particle at any step (Eq. 35); where the origin of u is free, of the rise.
+  /// Largest |û − u|/|u| of any queried particle at any step (Eq. 35); where the origin of u is free, of its
+  /// largest rise.
   double worst_query = 0.0;
   double worst_query_of_rise = 0.0;  ///< largest |û − u| of these, relative to their largest |u − u_0|
   double field = 0.0;                ///< relative L2 error of u − u_0 over all particles and the moments kept

@@ -48,6 +48,20 @@ TEST(Csv, LinesAreCountedWithThoseLeftOut) {
   }
 }
 
+TEST(Csv, QuotesAmissAreNoNumbers) {
+  const TestFolder folder;
+  for (const auto& [line, words] : {std::pair{"\"1\"2,3", "line 2: has text behind a closing quote"},
+                                    {"\"1,3", "line 2: has a quote that nothing"}}) {
+    std::ofstream(folder / "table.csv") << "x,y\n" << line << "\n";
+    try {
+      read_csv(folder / "table.csv");
+      ADD_FAILURE() << line;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Csv, OfCommentsAloneIsEmpty) {
   const TestFolder folder;
   std::ofstream(folder / "table.csv") << "# nothing\n";

@@ -179,6 +179,25 @@ TEST(HeatSample, FileDoesNotDependOnTheNumberOfRanks) {
   }
 }
 
+TEST(HeatSample, ATableOfOtherTemperaturesIsRefused) {
+  const TestFolder folder;
+  const auto everyone = Tpetra::getDefaultComm();
+  {
+    hdf5::File file = hdf5::File::create(folder / "sample.h5", everyone);
+    hdf5::Group group = file.create_group("model");
+    HeatCase().model()->sampled(some_rows())->save_sample(group);
+  }
+  Teuchos::ParameterList list = HeatCase().list();
+  list.sublist("table").set("to", TableRange::of(list).to + 1.0);
+  const hdf5::File file = hdf5::File::read(folder / "sample.h5", everyone);
+  try {
+    Registry<Model>::restore(list, {everyone}, file.group("model"));
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("material/properties: has "), std::string::npos) << error.what();
+  }
+}
+
 TEST(HeatSample, DamagedFileIsNamed) {
   const TestFolder folder;
   const auto everyone = Tpetra::getDefaultComm();
