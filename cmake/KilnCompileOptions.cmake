@@ -35,3 +35,5 @@ if(KILN_COVERAGE)
   target_link_options(kiln_options INTERFACE --coverage)
 endif()
 target_link_libraries(kiln_options INTERFACE kiln_dependencies)
+# For tests, which take longer to compile than to run.
+set(KILN_QUICKLY_COMPILED $<$<CONFIG:Release>:-O1>)

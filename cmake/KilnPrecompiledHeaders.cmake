@@ -7,8 +7,6 @@ function(kiln_precompile target)
   if(NOT KILN_PRECOMPILED_HEADERS)
     return()
   endif()
-  # What ccache needs to tell such a header's contents.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   if(HEADERS_FROM)
     target_precompile_headers(${target} REUSE_FROM ${HEADERS_FROM})
     return()
@@ -16,6 +14,6 @@ function(kiln_precompile target)
   target_precompile_headers(${target} PRIVATE
     <Kokkos_Core.hpp> <Teuchos_Comm.hpp> <Teuchos_CommHelpers.hpp> <Teuchos_ParameterList.hpp> <Teuchos_RCP.hpp>
     <Tpetra_CrsMatrix_decl.hpp> <Tpetra_Import_decl.hpp> <Tpetra_Map.hpp> <Tpetra_MultiVector_decl.hpp>
-    <Tpetra_Operator.hpp> <Tpetra_Vector_decl.hpp> <fmt/format.h> <nlohmann/json.hpp>
+    <Tpetra_Operator.hpp> <Tpetra_Vector_decl.hpp> <fmt/format.h>
     <algorithm> <cmath> <filesystem> <functional> <map> <memory> <string> <vector>)
 endfunction()

@@ -3,19 +3,23 @@
 find_package(GTest REQUIRED)
 set(KILN_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
-    OPENBLAS_NUM_THREADS=1)
+    # Ranks of one machine: not to look for networks halves each start.
+    OMPI_MCA_pml=ob1 OPENBLAS_NUM_THREADS=1)
 
 # Objects of executables, compiled as those themselves are, or they could not share precompiled headers.
 function(kiln_test_objects name)
   add_library(${name} OBJECT ${ARGN})
   target_link_libraries(${name} PRIVATE kiln_library GTest::gtest)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_compile_options(${name} PRIVATE -fPIE)
+  target_compile_options(${name} PRIVATE -fPIE ${KILN_QUICKLY_COMPILED})
 endfunction()
 
 if(NOT TARGET kiln_test_main)
   kiln_test_objects(kiln_test_main ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
   kiln_precompile(kiln_test_main)
+  if(KILN_PRECOMPILED_HEADERS)
+    target_precompile_headers(kiln_test_main PRIVATE <gtest/gtest.h>)
+  endif()
 endif()
 
 # kiln_test_cases(name a.cpp …): sources that several tests share, compiled once. A test takes them as a source:
@@ -35,6 +39,7 @@ function(kiln_test)
   endif()
   add_executable(test_${TEST_NAME} ${TEST_SOURCES} $<TARGET_OBJECTS:kiln_test_main> ${KILN_PROGRAM_OBJECTS})
   target_link_libraries(test_${TEST_NAME} PRIVATE kiln_library GTest::gtest)
+  target_compile_options(test_${TEST_NAME} PRIVATE ${KILN_QUICKLY_COMPILED})
   kiln_precompile(test_${TEST_NAME} FROM kiln_test_main)
   foreach(ranks IN LISTS TEST_RANKS)
     if(ranks EQUAL 1)

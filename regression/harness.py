@@ -1,5 +1,7 @@
 """Runs the built command line the way a user does. The environment names the programs: KILN and MPIEXEC."""
 
+import atexit
+import functools
 import hashlib
 import os
 import re
@@ -37,9 +39,30 @@ def command(*arguments, ranks=1):
     return launcher + [os.environ["KILN"]] + [str(argument) for argument in arguments]
 
 
-def kiln(folder, *arguments, ranks=1, **how):
+@functools.cache
+def sessions():
+    """The folder in which Open MPI keeps what it needs to know of runs that stand alone."""
+    temporary = tempfile.TemporaryDirectory(prefix="kiln-sessions-")
+    atexit.register(temporary.cleanup)
+    return temporary.name
+
+
+def alone():
+    """Environment of a run of one rank that starts without Open MPI's daemon, which takes longer than most runs of tests.
+
+    Nothing tells two such runs apart, so that each needs a session folder of its own and no shared memory."""
+    return {
+        "OMPI_MCA_ess_singleton_isolated": "1",
+        "OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=sessions()),
+        "OMPI_MCA_pml": "ob1",
+        "OMPI_MCA_btl": "self",
+    }
+
+
+def kiln(folder, *arguments, ranks=1, environment=None, **how):
     """Runs kiln in a folder."""
-    return program(folder, *command(*arguments, ranks=ranks), **how)
+    environment = {**(alone() if ranks == 1 else {}), **(environment or {})}
+    return program(folder, *command(*arguments, ranks=ranks), environment=environment, **how)
 
 
 def program(folder, *words, timeout=60, environment=None):

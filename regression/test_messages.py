@@ -160,6 +160,13 @@ class MessagesTest(KilnTest):
         (self.folder / "case.yaml").write_text(text[: text.index("time:\n")] + text[text.index("method:") :])
         self.wrong("run", "case.yaml", lines=1, words=("case.yaml", "time", "missing"))
 
+    def test_plugin_without_a_name(self):
+        self.wrong("check", SMALL, "--set", 'plugins=[""]', lines=1, words=["plugins.0", "an empty text is given"])
+
+    def test_more_windows_than_snapshots(self):
+        words = ["reduction.windows.count", "41 windows are more than the 40 snapshots", "at most 40"]
+        self.wrong("train", SMALL, "--set", "reduction.windows.count=41", lines=1, words=words)
+
     def test_training_without_a_reduction_block(self):
         text = SMALL.read_text()
         (self.folder / "case.yaml").write_text(text[: text.index("reduction:\n")] + text[text.index("output:") :])

@@ -207,7 +207,7 @@ void ValueReader::read_list(const YamlNode& node, const Entry& entry, const std:
       } else if (entry.kind == Kind::integers) {
         integers.push_back(integer(item, entry));
       } else {
-        if (item.kind != YamlNode::Kind::scalar) refuse(what_is_given(item));
+        require_scalar(item);
         texts.push_back(item.text);
       }
     } catch (const InputError& error) {

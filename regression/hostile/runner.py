@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable
 
-from harness import SLOWER
+from harness import SLOWER, alone
 
 CPU_SECONDS = 5.0 * SLOWER
 # A busy machine makes a run wait; a run that takes longer than this hangs.
@@ -86,7 +86,10 @@ def run_limited(words, folder, stdin=b"", wall=WALL_SECONDS):
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, tempfile.TemporaryFile() as given:
         given.write(stdin)
         given.seek(0)
-        process = subprocess.Popen(words, cwd=folder, stdin=given, stdout=out, stderr=err, start_new_session=True)
+        environment = {**os.environ, **alone()}
+        process = subprocess.Popen(
+            words, cwd=folder, env=environment, stdin=given, stdout=out, stderr=err, start_new_session=True
+        )
         hung = threading.Event()
 
         def end():

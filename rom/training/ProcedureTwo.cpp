@@ -104,7 +104,14 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
       every_(std::min(block.sublist("snapshots").get<int>("every"), span_.last_step)) {
   // In one window a rank too high is a mistake; of several, some may hold less.
   basis_settings_.rank_is_cap = residual_settings_.rank_is_cap = windows_.count != 1;
+  if (windows_.count && *windows_.count > snapshots()) {
+    throw InputError(block.name() + ".windows.count",
+                     fmt::format("{} windows are more than the {} snapshots of the run", *windows_.count, snapshots()),
+                     fmt::format("at most {}, or a smaller snapshots.every", snapshots()));
+  }
 }
+
+int ProcedureTwo::snapshots() const { return (span_.last_step + every_ - 1) / every_; }
 
 void ProcedureTwo::stage(const std::string& name, RunReport& report, const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -123,7 +130,7 @@ void ProcedureTwo::warn(const std::string& warning, RunReport& report) const {
 }
 
 std::vector<int> ProcedureTwo::window_ends(double error) const {
-  const int snapshots = (span_.last_step + every_ - 1) / every_;
+  const int snapshots = this->snapshots();
   std::vector<int> ends;
   if (windows_.error) {
     ends = windows_within(*costs_, *basis_settings_.rank, error);
@@ -133,7 +140,7 @@ std::vector<int> ProcedureTwo::window_ends(double error) const {
     ends.resize(count);
     Teuchos::broadcast(*communicator_, 0, count, ends.data());
   } else if (windows_.count) {
-    const int count = std::min(*windows_.count, snapshots);
+    const int count = *windows_.count;
     for (int w = 1; w <= count; ++w) ends.push_back(static_cast<int>(static_cast<long long>(snapshots) * w / count));
   } else {
     const int length = std::max(1, (std::min(*windows_.steps, span_.last_step) + every_ - 1) / every_);

@@ -39,6 +39,8 @@ class ProcedureTwo : public Trainer {
 
  private:
   void run_full_order(RunReport& report);
+  /// How many states of a run are kept, the initial one apart.
+  int snapshots() const;
   /// Steps at which windows end, for windows that hold `error` where the input asks for that.
   std::vector<int> window_ends(double error) const;
   std::vector<Pod> window_bases(const std::vector<int>& ends, RunReport& report) const;
