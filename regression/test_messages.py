@@ -7,7 +7,7 @@ import fcntl
 import re
 import subprocess
 
-from harness import SMALL, KilnTest, command, digests, main
+from harness import HERE, SMALL, KilnTest, command, digests, main
 
 STACK_TRACE = re.compile(r"terminate|what\(\)|Aborted|[Bb]acktrace|Segmentation|unforeseen|did not foresee")
 
@@ -202,6 +202,12 @@ class MessagesTest(KilnTest):
         self.assertEqual((nothing.status, nothing.stderr), (0, ""))
 
     # Data and output files
+
+    def test_jacobian_that_the_model_lacks(self):
+        vortices = (HERE / "cases" / "vortex-file.yaml", "--set", "output.directory=results")
+        words = ("VortexModel", "rate_jacobian_matrix", "time.newton.jacobian: finite difference")
+        for command in ("check", "run"):
+            self.wrong(command, *vortices, "--set", "time.newton.jacobian=sparse", lines=1, words=words)
 
     def test_no_reduction_file(self):
         for method, ranks in (("galerkin", 1), ("lspg", 1), ("gnat", 2)):

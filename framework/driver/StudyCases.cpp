@@ -13,13 +13,6 @@
 namespace kiln {
 namespace {
 
-using Texts = Teuchos::Array<std::string>;
-
-std::vector<std::string> texts_of(const Teuchos::ParameterList& list, const std::string& key) {
-  if (list.isType<Texts>(key)) return list.get<Texts>(key).toVector();
-  return {list.get<std::string>(key)};
-}
-
 /// Turns the blocks of `cases:` into cases one after the other and collects what is wrong with them.
 class Expansion {
  public:
@@ -33,7 +26,7 @@ class Expansion {
     if (block.isSublist("for")) {
       const Teuchos::ParameterList& list = block.sublist("for");
       for (auto entry = list.begin(); entry != list.end(); ++entry) {
-        names.emplace_back(list.name(entry), texts_of(list, list.name(entry)));
+        names.emplace_back(list.name(entry), texts_in(list, list.name(entry)));
       }
     }
     for (PlaceholderValues& values : combinations(names)) add(block, place, std::move(values));
@@ -90,9 +83,9 @@ class Expansion {
         refuse({entry_place, "the study sets the case's folder itself", "the case's `name`", {}});
       }
       std::string text;
-      if (set.isType<Texts>(set.name(entry))) {
+      if (set.isType<Teuchos::Array<std::string>>(set.name(entry))) {
         std::vector<std::string> items;
-        for (const std::string& one : set.get<Texts>(set.name(entry))) {
+        for (const std::string& one : texts_in(set, set.name(entry))) {
           items.push_back(yaml_text(fill(one, values, entry_place)));
         }
         text = fmt::format("[{}]", fmt::join(items, ", "));

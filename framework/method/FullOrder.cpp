@@ -94,6 +94,12 @@ void FullOrder::initial(VectorView x) const {
   Kokkos::deep_copy(x, Kokkos::subview(sources, std::make_pair(LocalIndex(0), halo_.row_size())));
 }
 
+void FullOrder::require_jacobian() {
+  const VectorView sources("kiln::method::initial state", halo_.source_size());
+  model_->initial_state(sources);
+  jacobian_->require_offered(sources);
+}
+
 void FullOrder::rate_at(ConstVectorView x, double time, VectorView f) {
   Kokkos::deep_copy(state_.rows(), x);
   {

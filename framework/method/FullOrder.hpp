@@ -41,6 +41,7 @@ class FullOrder : public Method {
   /// Throws DivergenceError for a residual that is not finite or grows beyond `divergence_growth`, and for a linear
   /// solve that fails.
   SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) override;
+  void require_jacobian() override;
 
   Teuchos::RCP<const Map> particles() const override { return model_->rows(); }
   ConstPositionView positions() const override;

@@ -60,6 +60,9 @@ class Method {
   /// u, f hold state and rate at this rank's rows there. Throws DivergenceError without step number; the driver adds
   /// it.
   virtual SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) = 0;
+  /// Throws NotOffered for a form of the Jacobian that an implicit solve() is to use and the model lacks. Schemes with
+  /// implicit steps ask when they are made, before a run replaces what an earlier one left. Collective.
+  virtual void require_jacobian() = 0;
 
   /// Particles whose state can be told on this rank, each on exactly one rank. Full order: all; hyper-reduced: the
   /// sample mesh and the queried particles.

@@ -93,17 +93,11 @@ ParameterPoints rows(const Axes& axes) {
   return points;
 }
 
-/// The values listed under a name, one or several.
-std::vector<std::string> texts_of(const Teuchos::ParameterList& list, const std::string& name) {
-  if (!list.isType<Teuchos::Array<std::string>>(name)) return {list.get<std::string>(name)};
-  return list.get<Teuchos::Array<std::string>>(name).toVector();
-}
-
 /// What is no number with whatever unit: told before the model is built, which knows the units.
 void check_numbers(const Teuchos::ParameterList& points, std::vector<Problem>& problems) {
   for (auto entry = points.begin(); entry != points.end(); ++entry) {
     const std::string& name = points.name(entry);
-    for (const std::string& text : texts_of(points, name)) {
+    for (const std::string& text : texts_in(points, name)) {
       try {
         parse_quantity(text);
       } catch (const InputError& error) {
@@ -125,7 +119,7 @@ Axes listed(const Teuchos::ParameterList& list, const Parameters& parameters, bo
       problems.push_back(unknown(path, name, parameters));
       continue;
     }
-    const std::vector<std::string> texts = texts_of(list, name);
+    const std::vector<std::string> texts = texts_in(list, name);
     axes.names.push_back(name);
     std::vector<double>& values = axes.values.emplace_back();
     for (const std::string& text : texts) values.push_back(value_in(text, *parameter, path, problems));

@@ -1,5 +1,6 @@
 #include "framework/registry/Specification.hpp"
 
+#include <Teuchos_Array.hpp>
 #include <algorithm>
 
 namespace kiln {
@@ -123,6 +124,11 @@ EntryBuilder Specification::section(std::string key, std::string help, Specifica
 EntryBuilder Specification::sections(std::string key, std::string help, Specification nested) {
   return add(Entry::Kind::sections, std::move(key), std::move(help), {},
              std::make_shared<const Specification>(std::move(nested)));
+}
+
+std::vector<std::string> texts_in(const Teuchos::ParameterList& dictionary, const std::string& key) {
+  if (!dictionary.isType<Teuchos::Array<std::string>>(key)) return {dictionary.get<std::string>(key)};
+  return dictionary.get<Teuchos::Array<std::string>>(key).toVector();
 }
 
 }  // namespace kiln

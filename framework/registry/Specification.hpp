@@ -128,4 +128,7 @@ class Specification {
   std::vector<Check> checks_;
 };
 
+/// What a checked dictionary holds under a key: its text, or all of its texts.
+std::vector<std::string> texts_in(const Teuchos::ParameterList& dictionary, const std::string& key);
+
 }  // namespace kiln

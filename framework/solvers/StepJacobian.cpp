@@ -35,6 +35,8 @@ class DiagonalJacobian : public StepJacobian {
   DiagonalJacobian(const Model& model, const Halo& halo)
       : model_(model), diagonal_("kiln::solvers::rate Jacobian diagonal", halo.row_size()) {}
 
+  void require_offered(ConstVectorView u) override { take(u, 0.0); }
+
   void take(ConstVectorView u, double time) override { model_.rate_jacobian_diagonal(u, time, diagonal_); }
 
   LinearSolveReport solve(double alpha, double gamma, ConstVectorView r, VectorView dx) override {
@@ -74,6 +76,8 @@ class KrylovJacobian : public StepJacobian {
 class SparseJacobian : public KrylovJacobian {
  public:
   using KrylovJacobian::KrylovJacobian;
+
+  void require_offered(ConstVectorView u) override { model_.rate_jacobian_matrix(u, 0.0); }
 
   void take(ConstVectorView u, double time) override {
     rate_jacobian_ = model_.rate_jacobian_matrix(u, time);
@@ -147,6 +151,11 @@ class OperatorJacobian : public KrylovJacobian {
         action_(model, form),
         operator_(Teuchos::rcp(new StepOperator(halo, action_))) {
     if (!diagonal_.is_null()) rate_diagonal_ = VectorView("kiln::solvers::rate Jacobian diagonal", halo.row_size());
+  }
+
+  void require_offered(ConstVectorView u) override {
+    action_.require_offered(u);
+    if (!diagonal_.is_null()) model_.rate_jacobian_diagonal(u, 0.0, rate_diagonal_);
   }
 
   void take(ConstVectorView u, double time) override {

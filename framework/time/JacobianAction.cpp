@@ -69,6 +69,20 @@ JacobianAction::JacobianAction(const Model& model, JacobianForm form) : model_(m
   }
 }
 
+void JacobianAction::require_offered(ConstVectorView u) const {
+  const std::size_t rows = local_size(*model_.rows()) * model_.fields().size();
+  switch (form_) {
+    case JacobianForm::diagonal:
+      return model_.rate_jacobian_diagonal(u, 0.0, diagonal_);
+    case JacobianForm::sparse:
+    case JacobianForm::matrix_free:
+      return model_.apply_rate_jacobian(u, 0.0, MatrixView("kiln::time::no direction", u.extent(0), 1),
+                                        MatrixView("kiln::time::no change", rows, 1));
+    case JacobianForm::finite_difference:
+      return;
+  }
+}
+
 void JacobianAction::take(ConstVectorView u, double time) {
   time_ = time;
   if (form_ == JacobianForm::diagonal) {

@@ -19,6 +19,10 @@ class JacobianAction {
   /// The model must outlive this object.
   JacobianAction(const Model& model, JacobianForm form);
 
+  /// Asks the model once for what take() and apply() will; u: sources × components. Throws NotOffered where it lacks
+  /// the form. Collective.
+  void require_offered(ConstVectorView u) const;
+
   /// Freezes ∂f/∂u at u (sources × components) and time in s. Copies what it needs of u. Throws NotOffered where the
   /// model lacks the form. Collective.
   void take(ConstVectorView u, double time);

@@ -94,6 +94,7 @@ LinearMultistep::LinearMultistep(MultistepCoefficients coefficients, const Conte
   std::vector<Problem> problems = coefficients_.problems();
   for (Problem& problem : problems) problem.path = path.empty() ? problem.path : path + "." + problem.path;
   if (!problems.empty()) throw InputError(std::move(problems));
+  if (!coefficients_.is_explicit()) method_.require_jacobian();
   starter_ = starter_of(coefficients_);
   if (needs_runge_kutta_starter(coefficients_)) {
     runge_kutta_starter_ = std::make_unique<RungeKuttaStep>(rk4_tableau(), method_, step_);

@@ -44,6 +44,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) override;
   int rate(ConstVectorView x, double time, VectorView dxdt) override { return projection().rate(x, time, dxdt); }
   SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) override;
+  void require_jacobian() override;
 
   Teuchos::RCP<const Map> particles() const override { return particles_; }
   ConstPositionView positions() const override { return positions_; }

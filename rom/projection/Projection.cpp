@@ -60,6 +60,12 @@ Projection::Projection(Parts parts, const NewtonSettings& settings, Factors fact
   step_ = VectorView("kiln::rom::update", size_);
 }
 
+void Projection::require_jacobian() const {
+  const VectorView sources("kiln::rom::initial", state_.extent(0));
+  model_->initial_state(sources);
+  jacobian_.require_offered(sources);
+}
+
 void Projection::initial(VectorView x) const {
   Kokkos::deep_copy(x, 0.0);
   VectorView reference("kiln::rom::reference", state_.extent(0)), difference("kiln::rom::initial", state_.extent(0));

@@ -66,6 +66,7 @@ class Projection {
   /// dû/dt = (Ψ0ᵀΦ)⁻¹ Ψ0ᵀ f, where Ψ0 is the test basis for J̃ = I; zero for the coordinates of other windows.
   int rate(ConstVectorView x, double time, VectorView dxdt);
   SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f);
+  void require_jacobian() const;
 
   /// Throws DivergenceError for a reduced Jacobian of this reciprocal condition number that is singular to round-off.
   static void require_regular(double reciprocal_condition, double time);

@@ -73,6 +73,7 @@ class StandInMethod : public Method {
     throw NotOffered("StandInMethod", "evaluate");
   }
   int rate(ConstVectorView, double, VectorView) override { throw NotOffered("StandInMethod", "rate"); }
+  void require_jacobian() override { throw NotOffered("StandInMethod", "require_jacobian"); }
   SolveReport solve(const StepResidual&, VectorView, VectorView, VectorView) override {
     throw NotOffered("StandInMethod", "solve");
   }
