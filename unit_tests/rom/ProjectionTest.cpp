@@ -326,5 +326,38 @@ TEST(PetrovGalerkin, LineSearchTurnsBackFromWhereThereIsNoRate) {
   EXPECT_LT(largest_difference(march_on(walled, true), march_on(model_of(values, world()), true)), 1e-6);
 }
 
+/// A chain whose Jacobian nobody has written.
+class RateAlone : public test::Chain {
+ public:
+  using Chain::Chain;
+  void apply_rate_jacobian(ConstVectorView, double, ConstMatrixView, MatrixView) const override {
+    throw NotOffered("RateAlone", "apply_rate_jacobian");
+  }
+};
+
+TEST_P(Projection, AnImplicitSchemeAsksForTheJacobianWhenItIsMade) {
+  for (const char* scheme : {"backward euler", "explicit euler"}) {
+    Case values;
+    values.scheme = scheme;
+    const auto method = [&](const char* jacobian) {
+      values.jacobian = jacobian;
+      const auto model = std::make_shared<RateAlone>(input_of(values).sublist("model"), Model::Context{world()});
+      return projection(model, values, 8, GetParam() == std::string("lspg") ? test::lspg_test : test::galerkin_test);
+    };
+    const auto make_scheme = [&values](Method& reduced) {
+      Registry<TimeScheme>::create(input_of(values).sublist("time").sublist("scheme"),
+                                   TimeScheme::Context{reduced, values.step});
+    };
+    if (values.scheme == "backward euler") {
+      EXPECT_THROW(make_scheme(*method("matrix free")), NotOffered);
+      EXPECT_THROW(make_scheme(*method("sparse")), NotOffered);
+    } else {
+      EXPECT_NO_THROW(make_scheme(*method("matrix free")));
+    }
+    EXPECT_NO_THROW(make_scheme(*method("finite difference")));
+    EXPECT_NO_THROW(make_scheme(*method("diagonal")));
+  }
+}
+
 }  // namespace
 }  // namespace kiln
