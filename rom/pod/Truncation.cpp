@@ -42,13 +42,13 @@ Specification PodSettings::specification() {
        {"gram", "tsqr", "randomised"})
       .defaults_to("gram");
   s.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
-    const bool rank = list.isParameter("rank"), energy = list.isParameter("energy");
-    if (rank && energy) problems.push_back({"rank", "both rank and energy are given", "one of the two", {}});
-    if (energy && list.get<std::string>("algorithm") == "randomised") {
+    const bool by_rank = list.isParameter("rank"), by_energy = list.isParameter("energy");
+    if (by_rank && by_energy) problems.push_back({"rank", "both rank and energy are given", "one of the two", {}});
+    if (by_energy && list.get<std::string>("algorithm") == "randomised") {
       problems.push_back(
           {"energy", "a randomised decomposition has to be told how many vectors it shall find", "rank", {}});
     }
-    if (!rank && !energy) problems.push_back({"", "neither rank nor energy is given", "one of the two", {}});
+    if (!by_rank && !by_energy) problems.push_back({"", "neither rank nor energy is given", "one of the two", {}});
   });
   return s;
 }
