@@ -3,7 +3,7 @@
 find_package(GTest REQUIRED)
 set(KILN_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1
-    # Ranks of one machine: not to look for networks halves each start.
+    # Ranks of one machine: the search for networks would take a third of each start.
     OMPI_MCA_pml=ob1 OPENBLAS_NUM_THREADS=1)
 
 # Objects of executables, compiled as those themselves are, or they could not share precompiled headers.
@@ -16,10 +16,7 @@ endfunction()
 
 if(NOT TARGET kiln_test_main)
   kiln_test_objects(kiln_test_main ${PROJECT_SOURCE_DIR}/unit_tests/main.cpp)
-  kiln_precompile(kiln_test_main)
-  if(KILN_PRECOMPILED_HEADERS)
-    target_precompile_headers(kiln_test_main PRIVATE <gtest/gtest.h>)
-  endif()
+  kiln_precompile(kiln_test_main ALSO <gtest/gtest.h>)
 endif()
 
 # kiln_test_cases(name a.cpp …): sources that several tests share, compiled once. A test takes them as a source:

@@ -98,6 +98,7 @@ void FullOrder::require_jacobian() {
   const VectorView sources("kiln::method::initial state", halo_.source_size());
   model_->initial_state(sources);
   jacobian_->require_offered(sources);
+  forget();
 }
 
 void FullOrder::rate_at(ConstVectorView x, double time, VectorView f) {

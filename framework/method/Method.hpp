@@ -61,7 +61,8 @@ class Method {
   /// it.
   virtual SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) = 0;
   /// Throws NotOffered for a form of the Jacobian that an implicit solve() is to use and the model lacks. Schemes with
-  /// implicit steps ask when they are made, before a run replaces what an earlier one left. Collective.
+  /// implicit steps ask when they are made, before a run replaces what an earlier one left. A frozen Jacobian may be
+  /// lost. Collective.
   virtual void require_jacobian() = 0;
 
   /// Particles whose state can be told on this rank, each on exactly one rank. Full order: all; hyper-reduced: the

@@ -15,7 +15,8 @@ class StepJacobian {
  public:
   virtual ~StepJacobian() = default;
 
-  /// Throws NotOffered where the model lacks what take() and solve() need of it; u: sources × components. Collective.
+  /// Throws NotOffered where the model lacks what take() and solve() need of it; u: sources × components. What was
+  /// taken is lost. Collective.
   virtual void require_offered(ConstVectorView u) = 0;
   /// Freezes ∂f/∂u at u (sources × components) and time in s. Throws NotOffered where the model lacks the form.
   virtual void take(ConstVectorView u, double time) = 0;

@@ -73,7 +73,7 @@ void JacobianAction::require_offered(ConstVectorView u) const {
   const std::size_t rows = local_size(*model_.rows()) * model_.fields().size();
   switch (form_) {
     case JacobianForm::diagonal:
-      return model_.rate_jacobian_diagonal(u, 0.0, diagonal_);
+      return model_.rate_jacobian_diagonal(u, 0.0, VectorView("kiln::time::no diagonal", rows));
     case JacobianForm::sparse:
     case JacobianForm::matrix_free:
       return model_.apply_rate_jacobian(u, 0.0, MatrixView("kiln::time::no direction", u.extent(0), 1),

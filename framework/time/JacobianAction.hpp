@@ -20,7 +20,7 @@ class JacobianAction {
   JacobianAction(const Model& model, JacobianForm form);
 
   /// Asks the model once for what take() and apply() will; u: sources × components. Throws NotOffered where it lacks
-  /// the form. Collective.
+  /// the form. What was taken stays. Collective.
   void require_offered(ConstVectorView u) const;
 
   /// Freezes ∂f/∂u at u (sources × components) and time in s. Copies what it needs of u. Throws NotOffered where the

@@ -46,10 +46,6 @@ void PetrovGalerkin::forget() {
   current_ = 0;
 }
 
-void PetrovGalerkin::require_jacobian() {
-  for (const OwnedWindow& window : windows_) window.projection->require_jacobian();
-}
-
 bool PetrovGalerkin::begin_step(double time) {
   const std::size_t window = window_at(time);
   if (window == current_) return false;

@@ -44,7 +44,8 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) override;
   int rate(ConstVectorView x, double time, VectorView dxdt) override { return projection().rate(x, time, dxdt); }
   SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) override;
-  void require_jacobian() override;
+  /// Asks the model of one window: those of all are the same physics.
+  void require_jacobian() override { projection().require_jacobian(); }
 
   Teuchos::RCP<const Map> particles() const override { return particles_; }
   ConstPositionView positions() const override { return positions_; }

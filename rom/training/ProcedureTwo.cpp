@@ -107,7 +107,7 @@ ProcedureTwo::ProcedureTwo(const Teuchos::ParameterList& block, const Context& c
   if (windows_.count && *windows_.count > snapshots()) {
     throw InputError(block.name() + ".windows.count",
                      fmt::format("{} windows are more than the {} snapshots of the run", *windows_.count, snapshots()),
-                     fmt::format("at most {}, or a smaller snapshots.every", snapshots()));
+                     fmt::format("at most {}{}", snapshots(), every_ > 1 ? ", or a smaller snapshots.every" : ""));
   }
 }
 

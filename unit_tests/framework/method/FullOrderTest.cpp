@@ -127,6 +127,15 @@ TEST(FullOrder, TheJacobianIsTakenOncePerRefreshPeriod) {
   }
 }
 
+TEST(FullOrder, ANewSchemeFindsNoOldJacobian) {
+  for (JacobianForm form : {JacobianForm::diagonal, JacobianForm::sparse}) {
+    FullOrder method(chain(), newton(form, 1e-8, 100, 100), krylov("gmres", 1e-10));
+    const VectorView first = run(method, "backward euler", 0.05, 4), again = run(method, "backward euler", 0.05, 4);
+    EXPECT_EQ(method.jacobian_evaluations(), 2) << to_text(form);
+    EXPECT_EQ(largest_difference(first, again), 0.0) << to_text(form);
+  }
+}
+
 TEST(FullOrder, TheCapEndsAStep) {
   FullOrder method(chain(), newton(JacobianForm::diagonal, 1e-12, 2));
   const auto time_scheme = scheme("backward euler", method, 0.2);

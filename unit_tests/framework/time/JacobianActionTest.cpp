@@ -59,6 +59,19 @@ TEST(JacobianAction, FormsAgree) {
   for (std::size_t i = 0; i < exact.extent(0); ++i) EXPECT_EQ(exact(i, 3), 0.0);
 }
 
+TEST(JacobianAction, AskingForItLeavesWhatWasTaken) {
+  const DiffusionChain chain({}, world());
+  const VectorView zero("kiln::test::u", contract::source_size(chain));
+  for (JacobianForm form : {JacobianForm::diagonal, JacobianForm::matrix_free, JacobianForm::finite_difference}) {
+    JacobianAction action(chain, form);
+    action.take(contract::disturbed_state(chain), 0.2);
+    action.require_offered(zero);
+    const MatrixView asked("kiln::test::product", contract::row_size(chain), 4);
+    action.apply(columns(chain), asked);
+    EXPECT_EQ(difference(product(chain, form), asked), 0.0) << to_text(form);
+  }
+}
+
 TEST(JacobianAction, TheDifferenceStepFollowsTheStatesScale) {
   // A cubic rate at states of 1e-3 … 1e6 times the usual size: a fixed step would fail at one end.
   const DiffusionChain chain({}, world());
