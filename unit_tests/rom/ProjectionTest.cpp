@@ -25,11 +25,15 @@ using test::self;
 using test::world;
 
 std::unique_ptr<PetrovGalerkin> of_kind(const std::string& kind, const Case& values, int modes,
-                                        const Teuchos::RCP<const Communicator>& communicator) {
-  const std::shared_ptr<Model> model = model_of(values, communicator);
+                                        const std::shared_ptr<Model>& model) {
   if (kind == "galerkin") return projection(model, values, modes, test::galerkin_test);
   if (kind == "lspg") return projection(model, values, modes, test::lspg_test);
   return test::gnat_projection(model, values, modes, values.count * values.components);
+}
+
+std::unique_ptr<PetrovGalerkin> of_kind(const std::string& kind, const Case& values, int modes,
+                                        const Teuchos::RCP<const Communicator>& communicator) {
+  return of_kind(kind, values, modes, model_of(values, communicator));
 }
 
 struct MethodAndScheme {
@@ -342,7 +346,7 @@ TEST_P(Projection, AnImplicitSchemeAsksForTheJacobianWhenItIsMade) {
     const auto method = [&](const char* jacobian) {
       values.jacobian = jacobian;
       const auto model = std::make_shared<RateAlone>(input_of(values).sublist("model"), Model::Context{world()});
-      return projection(model, values, 8, GetParam() == std::string("lspg") ? test::lspg_test : test::galerkin_test);
+      return of_kind(GetParam(), values, 8, model);
     };
     const auto make_scheme = [&values](Method& reduced) {
       Registry<TimeScheme>::create(input_of(values).sublist("time").sublist("scheme"),
