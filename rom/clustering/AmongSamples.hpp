@@ -21,6 +21,7 @@ class AmongSamples : public SourceClustering {
 
   /// Each row's other rows as clusters of one member. Throws InputError for a single row.
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
+  bool needs_shared_sources() const override { return false; }
   std::optional<WeightFit> weight_fit() const override { return fit_; }
   /// A row's weights must have seen all modes that pass it, also where one basis serves a whole run.
   int most_moments() const override { return 400; }

@@ -20,6 +20,7 @@ class CertifiedClusters : public SourceClustering {
   CertifiedClusters(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
+  bool needs_shared_sources() const override { return true; }
   std::optional<WeightFit> weight_fit() const override { return weight_fit_; }
 
  private:

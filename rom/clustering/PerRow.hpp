@@ -15,6 +15,7 @@ class PerRow : public SourceClustering {
   PerRow(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
+  bool needs_shared_sources() const override { return false; }
   std::optional<WeightFit> weight_fit() const override { return weight_fit_; }
 
  private:

@@ -47,6 +47,8 @@ class SourceClustering {
   /// Clusters for pairs.rows; those of a row ascend. Does not depend on the order of round-off by which the arguments
   /// of different numbers of ranks differ. Throws InputError for pairs it does not serve.
   virtual SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const = 0;
+  /// Whether it serves only pairs whose sources weigh the same in every row (SharedSources).
+  virtual bool needs_shared_sources() const = 0;
   /// How training is to fit row_weights to the rates that it has met; nothing: not at all.
   virtual std::optional<WeightFit> weight_fit() const = 0;
   /// How many states of a window, besides its beginning, training shows to clusters() and to the fit at most. Fifty

@@ -21,6 +21,7 @@ class SuperposedModes : public SourceClustering {
   SuperposedModes(const Teuchos::ParameterList& list, const NoContext&);
 
   SourceClusters clusters(const PairWeights& pairs, const SourceMotion& motion) const override;
+  bool needs_shared_sources() const override { return true; }
   std::optional<WeightFit> weight_fit() const override { return std::nullopt; }
 
  private:

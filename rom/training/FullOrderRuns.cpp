@@ -7,7 +7,6 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "framework/method/FullOrder.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/queries/QueryPoints.hpp"
 #include "framework/registry/Registry.hpp"
@@ -48,24 +47,17 @@ void FullOrderRuns::specify(Specification& reduction) {
       .optional();
 }
 
-void FullOrderRuns::check(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
-                          const Teuchos::RCP<const Communicator>& communicator) {
-  std::unique_ptr<Model> model;
-  for (const char* key : keys) {
-    if (!block.isSublist(key)) continue;
-    if (model == nullptr) model = Registry<Model>::create(input.sublist("model"), {communicator});
-    points_of(block.sublist(key), model->parameters());
-  }
-}
-
 void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
-  for (const Parameter& parameter : model_->parameters().list()) own_.names.push_back(parameter.name);
+  const Parameters& parameters = model()->parameters();
   own_.values.emplace_back();
-  for (const Parameter& parameter : model_->parameters().list()) own_.values.front().push_back(*parameter.value);
+  for (const Parameter& parameter : parameters.list()) {
+    own_.names.push_back(parameter.name);
+    own_.values.front().push_back(*parameter.value);
+  }
   points_.names = own_.names;
   for (const char* key : keys) {
     if (block.isSublist(key)) {
-      const ParameterPoints listed = points_of(block.sublist(key), model_->parameters());
+      const ParameterPoints listed = points_of(block.sublist(key), parameters);
       for (std::size_t point = 0; point < listed.count(); ++point) {
         points_.values.push_back(values_with(own_, listed, point));
       }
@@ -80,54 +72,58 @@ void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
 }
 
 FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
-                             const Settings& settings, const Teuchos::RCP<const Communicator>& communicator) {
-  const TimeSpan& span = settings.span;
-  FullOrder method(block, Method::Context{input, communicator});
-  for (std::size_t point = 0; point == 0 || point < points_.count(); ++point) {
-    method.forget();
-    if (point == 0) {
-      model_ = method.model();
-      collect_points(block);
-      reference_ = VectorView("kiln::rom::initial state", local_size(*model_->sources()) * model_->fields().size());
-      model_->initial_state(reference_);
-      snapshots_ = Snapshots(method.row_size());
-      if (settings.hold) snapshots_.limit(*settings.hold, communicator);
-      snapshots_.reserve(learnt_ * ((span.last_step + settings.every - 1) / settings.every));
-    }
-    points_.set(point, method.parameters());
+                             const Settings& settings, const Teuchos::RCP<const Communicator>& communicator)
+    : input_(input),
+      settings_(settings),
+      communicator_(communicator),
+      method_(block, Method::Context{input, communicator}),
+      reference_("kiln::rom::initial state", local_size(*model()->sources()) * model()->fields().size()),
+      snapshots_(method_.row_size()) {
+  collect_points(block);
+}
 
-    TrialReference trial{{}, nearest_particles(*model_, queried_positions(input)), {}, {}, Snapshots(0)};
-    if (!varied_.empty()) trial.point = points_.part(point, 1);
-    const int moments = std::min(span.last_step, trial_moments);
-    for (int k = 1; k <= moments; ++k) {
-      trial.steps.push_back(static_cast<int>(static_cast<long long>(span.last_step) * k / moments));
-    }
-    trial.states = Snapshots(method.row_size());
-    QueryRecord record(method, trial.queries);
-    StateRecord states(method, trial.steps, trial.states);
-    SnapshotObserver every(method, snapshots_, settings.every);
-    const std::string label = points_.count() == 1 ? std::string("full order")
-                                                   : fmt::format("full order, point {}/{}", point + 1, points_.count());
-    ProgressObserver progress(label, 0, *communicator);
-    std::vector<Observer*> observers{&record, &states};
-    ExtremeRecord extremes(method);
-    if (point < learnt_) observers.insert(observers.end(), {&every, &extremes});
-    if (!settings.quiet) observers.push_back(&progress);
-
-    VectorView x("kiln::rom::unknown", method.row_size());
-    method.initial(x);
-    const std::unique_ptr<TimeScheme> scheme =
-        Registry<TimeScheme>::create(input.sublist("time").sublist("scheme"), TimeScheme::Context{method, span.step});
-    scheme->start(x, 0.0);
-    totals_.push_back(run_time_loop(method, *scheme, x, span, observers));
-    const std::vector<GlobalIndex> found = extremes.ids();
-    extremes_.insert(extremes_.end(), found.begin(), found.end());
-    trial.query_values = record.values();
-    trials_.push_back(std::move(trial));
-  }
+void FullOrderRuns::run() {
+  model()->initial_state(reference_);
+  if (settings_.hold) snapshots_.limit(*settings_.hold, communicator_);
+  snapshots_.reserve(learnt_ * ((settings_.span.last_step + settings_.every - 1) / settings_.every));
+  for (std::size_t point = 0; point < points_.count(); ++point) run_at(point);
   std::sort(extremes_.begin(), extremes_.end());
   extremes_.erase(std::unique(extremes_.begin(), extremes_.end()), extremes_.end());
   go_home();
+}
+
+void FullOrderRuns::run_at(std::size_t point) {
+  method_.forget();
+  points_.set(point, method_.parameters());
+
+  TrialReference trial{{}, nearest_particles(*model(), queried_positions(input_)), {}, {}, Snapshots(method_.row_size())};
+  if (!varied_.empty()) trial.point = points_.part(point, 1);
+  const int last = settings_.span.last_step;
+  const int moments = std::min(last, trial_moments);
+  for (int k = 1; k <= moments; ++k) {
+    trial.steps.push_back(static_cast<int>(static_cast<long long>(last) * k / moments));
+  }
+  QueryRecord record(method_, trial.queries);
+  StateRecord states(method_, trial.steps, trial.states);
+  SnapshotObserver every(method_, snapshots_, settings_.every);
+  ExtremeRecord extremes(method_);
+  const std::string label = points_.count() == 1 ? std::string("full order")
+                                                 : fmt::format("full order, point {}/{}", point + 1, points_.count());
+  ProgressObserver progress(label, 0, *communicator_);
+  std::vector<Observer*> observers{&record, &states};
+  if (point < learnt_) observers.insert(observers.end(), {&every, &extremes});
+  if (!settings_.quiet) observers.push_back(&progress);
+
+  VectorView x("kiln::rom::unknown", method_.row_size());
+  method_.initial(x);
+  const std::unique_ptr<TimeScheme> scheme = Registry<TimeScheme>::create(
+      input_.sublist("time").sublist("scheme"), TimeScheme::Context{method_, settings_.span.step});
+  scheme->start(x, 0.0);
+  totals_.push_back(run_time_loop(method_, *scheme, x, settings_.span, observers));
+  const std::vector<GlobalIndex> found = extremes.ids();
+  extremes_.insert(extremes_.end(), found.begin(), found.end());
+  trial.query_values = record.values();
+  trials_.push_back(std::move(trial));
 }
 
 nlohmann::json FullOrderRuns::values(std::size_t point) const {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "framework/driver/TimeLoop.hpp"
-#include "framework/model/Model.hpp"
+#include "framework/method/FullOrder.hpp"
 #include "framework/registry/Specification.hpp"
 #include "rom/pod/Snapshots.hpp"
 #include "rom/training/TrialRun.hpp"
@@ -28,23 +28,21 @@ class FullOrderRuns {
   /// Adds the keys `train_on` and `try_on` to the block `reduction`.
   static void specify(Specification& reduction);
 
-  /// Throws InputError for points that are none of the model's; builds the model if there are points. Collective.
-  static void check(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block,
-                    const Teuchos::RCP<const Communicator>& communicator);
-
-  /// Runs them all. Throws InputError for points that are none of the model's. Collective.
+  /// Makes the model. Throws InputError for points that are none of the model's. Collective.
   FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block, const Settings& settings,
                 const Teuchos::RCP<const Communicator>& communicator);
+  /// Runs them all; what is told below of runs stands after it. Collective.
+  void run();
 
-  const std::shared_ptr<Model>& model() const { return model_; }
+  const std::shared_ptr<Model>& model() const { return method_.model(); }
   /// u_0 at the model's sources.
   const VectorView& reference() const { return reference_; }
   /// How many of the points the reduction learns from, at least one; they come first.
   std::size_t learnt() const { return learnt_; }
   /// Gives the model's live parameters their values at a point.
-  void go_to(std::size_t point) const { points_.set(point, model_->parameters()); }
+  void go_to(std::size_t point) const { points_.set(point, model()->parameters()); }
   /// Gives them the input's own values.
-  void go_home() const { own_.set(0, model_->parameters()); }
+  void go_home() const { own_.set(0, model()->parameters()); }
 
   /// u − u_0 of the points learnt from, one run after the other.
   Snapshots& snapshots() { return snapshots_; }
@@ -60,14 +58,18 @@ class FullOrderRuns {
 
  private:
   void collect_points(const Teuchos::ParameterList& block);
+  void run_at(std::size_t point);
 
+  const Teuchos::ParameterList& input_;
+  Settings settings_;
+  Teuchos::RCP<const Communicator> communicator_;
+  FullOrder method_;
   ParameterPoints points_;           ///< all live parameters at each point
   ParameterPoints own_;              ///< the same of the input
   std::vector<std::string> varied_;  ///< names of the parameters that points list
   std::size_t learnt_ = 1;
-  std::shared_ptr<Model> model_;
   VectorView reference_;
-  Snapshots snapshots_{0};
+  Snapshots snapshots_;
   std::vector<TrialReference> trials_;
   std::vector<GlobalIndex> extremes_;
   std::vector<LoopTotals> totals_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "framework/base/Error.hpp"
+#include "rom/clustering/SharedSources.hpp"
 #include "rom/clustering/SourceClustering.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 #include "rom/training/FitWeights.hpp"
@@ -83,6 +84,15 @@ ParticleTable table_of_clusters(const SourceClusters& clusters, const ParticleTa
 }
 
 }  // namespace
+
+void check_clustering(const Teuchos::ParameterList& block, const Model& model) {
+  const PairwiseModel& pairs = pairwise(model, block);
+  if (!Registry<SourceClustering>::create(block, NoContext{})->needs_shared_sources()) return;
+  const Map& rows = *model.rows();
+  std::vector<GlobalIndex> ends{rows.getMinAllGlobalIndex(), rows.getMaxAllGlobalIndex()};
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  SharedSources(pairs.pair_weights(ends), block.name());
+}
 
 std::vector<int> clustering_steps(const Teuchos::ParameterList& block, int first, int last) {
   const int count = std::min(last - first, Registry<SourceClustering>::create(block, NoContext{})->most_moments());

@@ -11,6 +11,10 @@ namespace kiln {
 /// as many as the clustering wants. `block`: the input's `clustering`; `first`: the step the window begins with.
 std::vector<int> clustering_steps(const Teuchos::ParameterList& block, int first, int last);
 
+/// Throws InputError for a model that is no PairwiseModel, and where the pairs of two of its rows tell that the
+/// clustering does not serve them. `block`: the input's `clustering`. Collective.
+void check_clustering(const Teuchos::ParameterList& block, const Model& model);
+
 /// Clusters the sources of the newest window's sampled rows and builds the model on them. `reference`: u_ref at the
 /// model's rows; `windows`: those learnt so far; `moments`: coordinates of all windows at the newest one's beginning
 /// and at its clustering_steps(); `block`: the input's `clustering`. Throws InputError for a model that is no

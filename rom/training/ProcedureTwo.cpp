@@ -268,11 +268,18 @@ TrialErrors ProcedureTwo::try_all(const std::string& method, const std::string& 
   return worst;
 }
 
-void ProcedureTwo::run_full_order(RunReport& report) {
+std::unique_ptr<FullOrderRuns> ProcedureTwo::full_order_runs() const {
   const Teuchos::ParameterList& snapshots = block_.sublist("snapshots");
   FullOrderRuns::Settings settings{span_, every_, std::nullopt, quiet_};
   if (windows_.count == 1 && snapshots.isParameter("hold")) settings.hold = snapshots.get<int>("hold");
-  full_order_ = std::make_unique<FullOrderRuns>(input_, block_, settings, communicator_);
+  auto runs = std::make_unique<FullOrderRuns>(input_, block_, settings, communicator_);
+  if (clusters()) check_clustering(block_.sublist("clustering"), *runs->model());
+  return runs;
+}
+
+void ProcedureTwo::run_full_order(RunReport& report) {
+  full_order_ = full_order_runs();
+  full_order_->run();
   LoopTotals totals;
   for (const LoopTotals& run : full_order_->totals()) {
     totals.steps += run.steps;

@@ -34,10 +34,12 @@ class ProcedureTwo : public Trainer {
   static Specification specification();
   ProcedureTwo(const Teuchos::ParameterList& block, const Context& context);
 
-  void check() const override { FullOrderRuns::check(input_, block_, communicator_); }
+  void check() const override { full_order_runs(); }
   void train(const std::filesystem::path& file, RunReport& report) override;
 
  private:
+  /// Those of stage 1, before they run. Throws InputError for what the model rules out.
+  std::unique_ptr<FullOrderRuns> full_order_runs() const;
   void run_full_order(RunReport& report);
   /// How many states of a run are kept, the initial one apart.
   int snapshots() const;

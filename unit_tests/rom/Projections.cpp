@@ -101,6 +101,11 @@ RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& comm
   return report;
 }
 
+void check_training(const Case& values, const Teuchos::RCP<const Communicator>& communicator) {
+  const Teuchos::ParameterList input = input_of(values);
+  Registry<Trainer>::create(input.sublist("reduction"), Trainer::Context{input, communicator, true})->check();
+}
+
 std::unique_ptr<Method> method_of(Case values, const std::string& type,
                                   const Teuchos::RCP<const Communicator>& communicator) {
   values.method = type;

@@ -36,6 +36,8 @@ std::unique_ptr<PetrovGalerkin> gnat_projection(const std::shared_ptr<Model>& mo
 
 /// Trains as the input of a case asks for: `reduction.h5` in its folder.
 RunReport train(const Case& values, const Teuchos::RCP<const Communicator>& communicator);
+/// What `kiln check` asks of such a training.
+void check_training(const Case& values, const Teuchos::RCP<const Communicator>& communicator);
 /// A registered method on the case.
 std::unique_ptr<Method> method_of(Case values, const std::string& type,
                                   const Teuchos::RCP<const Communicator>& communicator);
