@@ -87,6 +87,15 @@ KILN_REGISTER(TimeScheme, Trapezoidal, "trapezoidal", "implicit, order 2, A-stab
 KILN_REGISTER(TimeScheme, Bdf2, "bdf2", "backward differentiation, implicit, order 2, L-stable");
 KILN_REGISTER(TimeScheme, AnyLinearMultistep, "linear multistep", "any coefficients alpha and beta of Eq. 14");
 
+/// A form of the Jacobian that the model lacks, told at the key that asks for it.
+void require_jacobian(Method& method) {
+  try {
+    method.require_jacobian();
+  } catch (const NotOffered& error) {
+    throw InputError("time.newton.jacobian", error.what());
+  }
+}
+
 }  // namespace
 
 LinearMultistep::LinearMultistep(MultistepCoefficients coefficients, const Context& context, const std::string& path)
@@ -94,7 +103,7 @@ LinearMultistep::LinearMultistep(MultistepCoefficients coefficients, const Conte
   std::vector<Problem> problems = coefficients_.problems();
   for (Problem& problem : problems) problem.path = path.empty() ? problem.path : path + "." + problem.path;
   if (!problems.empty()) throw InputError(std::move(problems));
-  if (!coefficients_.is_explicit()) method_.require_jacobian();
+  if (!coefficients_.is_explicit()) require_jacobian(method_);
   starter_ = starter_of(coefficients_);
   if (needs_runge_kutta_starter(coefficients_)) {
     runge_kutta_starter_ = std::make_unique<RungeKuttaStep>(rk4_tableau(), method_, step_);

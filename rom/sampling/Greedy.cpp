@@ -177,6 +177,10 @@ int Greedy::checked_samples(GlobalIndex particles, int modes, int components, in
   return samples_;
 }
 
+void Greedy::check(GlobalIndex particles, int components, int residual_modes) const {
+  checked_samples(particles, residual_modes, components, static_cast<int>(checked_seeds(particles).size()));
+}
+
 std::vector<GlobalIndex> Greedy::sample(const Map& rows, ConstMatrixView modes, int components) const {
   const auto particles = static_cast<GlobalIndex>(rows.getGlobalNumElements());
   std::vector<GlobalIndex> chosen = checked_seeds(particles);

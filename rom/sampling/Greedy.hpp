@@ -16,6 +16,7 @@ class Greedy : public Sampling {
   static Specification specification();
   Greedy(const Teuchos::ParameterList& list, const NoContext&);
 
+  void check(GlobalIndex particles, int components, int residual_modes) const override;
   std::vector<GlobalIndex> sample(const Map& rows, ConstMatrixView modes, int components) const override;
 
  private:

@@ -273,7 +273,11 @@ std::unique_ptr<FullOrderRuns> ProcedureTwo::full_order_runs() const {
   FullOrderRuns::Settings settings{span_, every_, std::nullopt, quiet_};
   if (windows_.count == 1 && snapshots.isParameter("hold")) settings.hold = snapshots.get<int>("hold");
   auto runs = std::make_unique<FullOrderRuns>(input_, block_, settings, communicator_);
-  if (clusters()) check_clustering(block_.sublist("clustering"), *runs->model());
+  const Model& model = *runs->model();
+  Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
+      ->check(static_cast<GlobalIndex>(model.rows()->getGlobalNumElements()), static_cast<int>(model.fields().size()),
+              residual_settings_.rank.value_or(basis_settings_.rank.value_or(0)));
+  if (clusters()) check_clustering(block_.sublist("clustering"), model);
   return runs;
 }
 

@@ -125,6 +125,9 @@ TEST(Greedy, ChoosesTheSameOnAnyNumberOfRanks) {
 
 TEST(Greedy, RefusesWhatCannotBe) {
   const Table table = random_table(20, 6);
+  EXPECT_NO_THROW(greedy(6)->check(20, 1, 6));
+  EXPECT_NO_THROW(greedy(1)->check(20, 1, 0)) << "where the snapshots decide";
+  EXPECT_EQ(message([&] { greedy(5)->check(20, 1, 6); }), message([&] { sample(*greedy(5), table, 1, world()); }));
   EXPECT_EQ(
       message([&] { sample(*greedy(5), table, 1, world()); }),
       "reduction.sampling.samples: 5 particles with 1 component each cannot determine 6 residual modes; expected at "
