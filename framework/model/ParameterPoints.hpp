@@ -12,6 +12,9 @@ struct ParameterPoints {
   std::vector<std::string> names;           ///< as in Parameters::list()
   std::vector<std::vector<double>> values;  ///< in SI units: of each point, in the order of `names`
 
+  /// The values that all of these parameters have now, as the only point.
+  static ParameterPoints of(const Parameters& parameters);
+
   std::size_t count() const { return values.size(); }
   /// Points first … first + count − 1.
   ParameterPoints part(std::size_t first, std::size_t count) const;

@@ -17,31 +17,33 @@ constexpr double negligible = 1e-6;
 /// A contribution counts as at least this share of the usual size when one is chosen.
 constexpr double small = 0.05;
 
-/// The rates of a model at all moments: rows × components by moments. Pairs know no time, and what else there is
+/// The rates of a model in all states: rows × components by states. Pairs know no time, and what else there is
 /// cancels.
-MatrixView rates(const Model& model, const std::vector<const ParticleTable*>& tables,
-                 const std::vector<VectorView>& moments) {
+MatrixView rates(Model& model, const std::vector<const ParticleTable*>& tables, const LearntStates& states) {
+  const ParameterPoints own = ParameterPoints::of(model.parameters());
   const std::size_t columns = tables.front()->modes.shape[1] / tables.front()->components;
   const BasisRows basis = rows_at(*model.sources(), tables, columns, "source clustering");
   const VectorView state("kiln::rom::state", basis.reference.extent(0));
   const std::size_t rows = local_size(*model.rows()) * tables.front()->components;
-  MatrixView result("kiln::rom::rates at moments", rows, moments.size());
-  for (std::size_t moment = 0; moment < moments.size(); ++moment) {
+  MatrixView result("kiln::rom::rates in states", rows, states.coordinates.size());
+  for (std::size_t k = 0; k < states.coordinates.size(); ++k) {
     Kokkos::deep_copy(state, basis.reference);
-    const ConstVectorView known = Kokkos::subview(moments[moment], std::make_pair(std::size_t(0), columns));
+    const ConstVectorView known = Kokkos::subview(states.coordinates[k], std::make_pair(std::size_t(0), columns));
     dense::multiply(1.0, basis.modes, known, 1.0, state);
-    model.rate(state, 0.0, Kokkos::subview(result, Kokkos::ALL, moment));
+    states.points.set(states.at[k], model.parameters());
+    model.rate(state, 0.0, Kokkos::subview(result, Kokkos::ALL, k));
   }
+  own.set(0, model.parameters());
   return result;
 }
 
-/// Entries of row i of a less those of row j of b, at all moments.
+/// Entries of row i of a less those of row j of b, in all states.
 std::vector<double> difference(const MatrixView& a, std::size_t i, const MatrixView& b, std::size_t j,
                                std::size_t components) {
   std::vector<double> values;
-  for (std::size_t moment = 0; moment < a.extent(1); ++moment) {
+  for (std::size_t k = 0; k < a.extent(1); ++k) {
     for (std::size_t c = 0; c < components; ++c) {
-      values.push_back(a(i * components + c, moment) - b(j * components + c, moment));
+      values.push_back(a(i * components + c, k) - b(j * components + c, k));
     }
   }
   return values;
@@ -148,11 +150,11 @@ struct RowRates {
 };
 
 /// Collective.
-std::vector<RowRates> row_rates(const PairwiseModel& pairwise, const Model& sample,
-                                const std::vector<const ParticleTable*>& tables, const std::vector<VectorView>& moments,
+std::vector<RowRates> row_rates(const PairwiseModel& pairwise, Model& sample,
+                                const std::vector<const ParticleTable*>& tables, const LearntStates& states,
                                 const SourceClusters& clusters) {
   const std::unique_ptr<Model> model = pairwise.clustered(clusters);
-  const MatrixView all = rates(*model, tables, moments), exact = rates(sample, {tables.front()}, moments);
+  const MatrixView all = rates(*model, tables, states), exact = rates(sample, {tables.front()}, states);
   const std::size_t components = tables.front()->components;
   std::vector<RowRates> result(all.extent(0) / components);
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -168,7 +170,7 @@ std::vector<RowRates> row_rates(const PairwiseModel& pairwise, const Model& samp
       const std::size_t pair = clusters.row_offsets[row] + slot;
       if (pair < clusters.row_offsets[row + 1]) changed.row_weights[pair] *= 2.0;
     }
-    const MatrixView doubled = rates(*pairwise.clustered(changed), tables, moments);
+    const MatrixView doubled = rates(*pairwise.clustered(changed), tables, states);
     for (std::size_t i = 0; i < result.size(); ++i) {
       const std::size_t row = result[i].row;
       if (clusters.row_offsets[row] + slot >= clusters.row_offsets[row + 1]) continue;
@@ -187,11 +189,11 @@ double size_of(const Contributions& brought) {
 
 }  // namespace
 
-void fit_weights(const PairwiseModel& pairwise, const Model& sample, const ParticleTable& members,
-                 const ParticleTable& clustered, const std::vector<VectorView>& moments, const WeightFit& fit,
+void fit_weights(const PairwiseModel& pairwise, Model& sample, const ParticleTable& members,
+                 const ParticleTable& clustered, const LearntStates& states, const WeightFit& fit,
                  SourceClusters& clusters) {
   if (fit.most == 0 && clusters.members.size() == clusters.clusters()) return;
-  std::vector<RowRates> rows = row_rates(pairwise, sample, {&members, &clustered}, moments, clusters);
+  std::vector<RowRates> rows = row_rates(pairwise, sample, {&members, &clustered}, states, clusters);
   const Communicator& communicator = *sample.rows()->getComm();
   std::vector<double> sizes(clusters.rows.size(), 0.0), factors(clusters.row_weights.size(), 0.0);
   for (const RowRates& of : rows) sizes[of.row] = size_of(of.brought);

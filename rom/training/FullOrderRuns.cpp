@@ -49,11 +49,7 @@ void FullOrderRuns::specify(Specification& reduction) {
 
 void FullOrderRuns::collect_points(const Teuchos::ParameterList& block) {
   const Parameters& parameters = model()->parameters();
-  own_.values.emplace_back();
-  for (const Parameter& parameter : parameters.list()) {
-    own_.names.push_back(parameter.name);
-    own_.values.front().push_back(*parameter.value);
-  }
+  own_ = ParameterPoints::of(parameters);
   points_.names = own_.names;
   for (const char* key : keys) {
     if (block.isSublist(key)) {
@@ -96,7 +92,8 @@ void FullOrderRuns::run_at(std::size_t point) {
   method_.forget();
   points_.set(point, method_.parameters());
 
-  TrialReference trial{{}, nearest_particles(*model(), queried_positions(input_)), {}, {}, Snapshots(method_.row_size())};
+  TrialReference trial{
+      {}, nearest_particles(*model(), queried_positions(input_)), {}, {}, Snapshots(method_.row_size())};
   if (!varied_.empty()) trial.point = points_.part(point, 1);
   const int last = settings_.span.last_step;
   const int moments = std::min(last, trial_moments);

@@ -39,6 +39,8 @@ class FullOrderRuns {
   const VectorView& reference() const { return reference_; }
   /// How many of the points the reduction learns from, at least one; they come first.
   std::size_t learnt() const { return learnt_; }
+  /// All live parameters at each point.
+  const ParameterPoints& parameters() const { return points_; }
   /// Gives the model's live parameters their values at a point.
   void go_to(std::size_t point) const { points_.set(point, model()->parameters()); }
   /// Gives them the input's own values.

@@ -104,7 +104,7 @@ std::vector<int> clustering_steps(const Teuchos::ParameterList& block, int first
 }
 
 ClusteredMesh learn_clusters(const Teuchos::ParameterList& block, const Model& model, const VectorView& reference,
-                             const std::vector<WindowReduction>& windows, const std::vector<VectorView>& moments) {
+                             const std::vector<WindowReduction>& windows, const LearntStates& states) {
   const PairwiseModel& pairwise_model = pairwise(model, block);
   const WindowReduction& window = windows.back();
   const PairWeights pairs = pairwise_model.pair_weights(window.sampled);
@@ -112,10 +112,10 @@ ClusteredMesh learn_clusters(const Teuchos::ParameterList& block, const Model& m
   ClusteredMesh mesh;
   mesh.type = block.get<std::string>("type");
   const auto clustering = Registry<SourceClustering>::create(block, NoContext{});
-  mesh.clusters = clustering->clusters(pairs, motion_of(table, window.basis, moments));
+  mesh.clusters = clustering->clusters(pairs, motion_of(table, window.basis, states.coordinates));
   mesh.table = table_of_clusters(mesh.clusters, table, model.rows()->getMaxAllGlobalIndex() + 1);
   if (const auto fit = clustering->weight_fit()) {
-    fit_weights(pairwise_model, *window.sample, table, mesh.table, moments, *fit, mesh.clusters);
+    fit_weights(pairwise_model, *window.sample, table, mesh.table, states, *fit, mesh.clusters);
   }
   mesh.model = pairwise_model.clustered(mesh.clusters);
   mesh.unclustered_pairs = pairs.sources.size();

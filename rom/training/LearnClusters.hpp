@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "rom/files/Reduction.hpp"
+#include "rom/training/LearntStates.hpp"
 
 namespace kiln {
 
@@ -16,10 +17,10 @@ std::vector<int> clustering_steps(const Teuchos::ParameterList& block, int first
 void check_clustering(const Teuchos::ParameterList& block, const Model& model);
 
 /// Clusters the sources of the newest window's sampled rows and builds the model on them. `reference`: u_ref at the
-/// model's rows; `windows`: those learnt so far; `moments`: coordinates of all windows at the newest one's beginning
-/// and at its clustering_steps(); `block`: the input's `clustering`. Throws InputError for a model that is no
+/// model's rows; `windows`: those learnt so far; `states`: at the newest one's beginning and at its clustering_steps();
+/// `block`: the input's `clustering`. Throws InputError for a model that is no
 /// PairwiseModel, and for pairs the clustering does not serve. Collective.
 ClusteredMesh learn_clusters(const Teuchos::ParameterList& block, const Model& model, const VectorView& reference,
-                             const std::vector<WindowReduction>& windows, const std::vector<VectorView>& moments);
+                             const std::vector<WindowReduction>& windows, const LearntStates& states);
 
 }  // namespace kiln

@@ -63,11 +63,11 @@ std::vector<LearnWindows::Marcher> LearnWindows::marchers() const {
   return marchers;
 }
 
-std::vector<VectorView> LearnWindows::march(std::vector<Marcher>& marchers, std::size_t window, int first_step,
-                                            int last_step, const std::string& label) {
+LearntStates LearnWindows::march(std::vector<Marcher>& marchers, std::size_t window, int first_step, int last_step,
+                                 const std::string& label) {
   std::vector<int> steps;
   if (clusters()) steps = clustering_steps(settings_.block.sublist("clustering"), first_step, last_step);
-  std::vector<VectorView> moments;
+  LearntStates states{full_order_.parameters(), {}, {}};
   for (std::size_t point = 0; point < marchers.size(); ++point) {
     Marcher& marcher = marchers[point];
     ProgressObserver progress(
@@ -77,19 +77,21 @@ std::vector<VectorView> LearnWindows::march(std::vector<Marcher>& marchers, std:
     std::vector<Observer*> observers{&record};
     if (!settings_.quiet) observers.push_back(&progress);
     if (clusters()) {
-      moments.emplace_back("kiln::rom::unknown", marcher.x.extent(0));
-      Kokkos::deep_copy(moments.back(), marcher.x);
+      states.coordinates.emplace_back("kiln::rom::unknown", marcher.x.extent(0));
+      Kokkos::deep_copy(states.coordinates.back(), marcher.x);
     }
     full_order_.go_to(point);
     lspg_.projection(window).forget_jacobian();
     const LoopTotals part =
         run_time_loop(lspg_, *marcher.scheme, marcher.x, {settings_.span.step, first_step, last_step}, observers);
-    moments.insert(moments.end(), record.unknowns().begin(), record.unknowns().end());
+    states.coordinates.insert(states.coordinates.end(), record.unknowns().begin(), record.unknowns().end());
+    states.at.resize(states.coordinates.size(), point);
     totals_.steps += part.steps;
     totals_.residuals += part.residuals;
     totals_.capped_steps += part.capped_steps;
   }
-  return moments;
+  full_order_.go_home();
+  return states;
 }
 
 WindowReduction LearnWindows::learn_window(double end, Pod basis) {
@@ -109,11 +111,11 @@ WindowReduction LearnWindows::learn_window(double end, Pod basis) {
   return {end, std::move(basis), std::move(residual_basis), gappy, sampled, sampled_or_masked(model, sampled)};
 }
 
-void LearnWindows::add_clusters(std::vector<WindowReduction>& windows, const std::vector<VectorView>& moments,
+void LearnWindows::add_clusters(std::vector<WindowReduction>& windows, const LearntStates& states,
                                 nlohmann::json& facts) const {
   const VectorView reference = Kokkos::subview(full_order_.reference(), std::make_pair(0, lspg_.row_size()));
   ClusteredMesh mesh =
-      learn_clusters(settings_.block.sublist("clustering"), *full_order_.model(), reference, windows, moments);
+      learn_clusters(settings_.block.sublist("clustering"), *full_order_.model(), reference, windows, states);
   facts["clusters"].push_back({{"clusters", mesh.clusters.clusters()},
                                {"pairs", mesh.clusters.row_clusters.size()},
                                {"unclustered_pairs", mesh.unclustered_pairs}});
@@ -150,11 +152,11 @@ std::vector<WindowReduction> LearnWindows::learn(const std::vector<int>& ends, s
   int first_step = 0;
   for (std::size_t w = 0; w < ends.size(); ++w) {
     const std::string label = ends.size() == 1 ? "LSPG" : fmt::format("LSPG, window {}/{}", w + 1, ends.size());
-    const std::vector<VectorView> moments = march(marchers, w, first_step, ends[w], label);
+    const LearntStates states = march(marchers, w, first_step, ends[w], label);
     taken += residuals_.appended();
     discarded = std::max(discarded, residuals_.discarded_energy());
     windows.push_back(learn_window(ends[w] * settings_.span.step, std::move(bases[w])));
-    if (clusters()) add_clusters(windows, moments, facts);
+    if (clusters()) add_clusters(windows, states, facts);
     const WindowReduction& window = windows.back();
     facts["residual_basis"].push_back(facts_of(window.residual_basis));
     facts["sample_meshes"].push_back({{"end_s", window.end},
@@ -165,7 +167,6 @@ std::vector<WindowReduction> LearnWindows::learn(const std::vector<int>& ends, s
     first_step = ends[w];
   }
   lspg_.observe_residuals({});
-  full_order_.go_home();
   facts["lspg"] = {{"steps", totals_.steps},
                    {"residuals", totals_.residuals},
                    {"capped_steps", totals_.capped_steps},

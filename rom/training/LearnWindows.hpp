@@ -11,6 +11,7 @@
 #include "rom/pod/Pod.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
 #include "rom/training/FullOrderRuns.hpp"
+#include "rom/training/LearntStates.hpp"
 
 namespace kiln {
 
@@ -42,12 +43,11 @@ class LearnWindows {
   };
   std::vector<Marcher> marchers() const;
   /// Takes all points through a window; their residuals become snapshots. Returns what the clustering wants to know:
-  /// coordinates at the window's beginning and at clustering_steps().
-  std::vector<VectorView> march(std::vector<Marcher>& marchers, std::size_t window, int first_step, int last_step,
-                                const std::string& label);
+  /// states at the window's beginning and at clustering_steps(). Leaves the model with the input's own parameters.
+  LearntStates march(std::vector<Marcher>& marchers, std::size_t window, int first_step, int last_step,
+                     const std::string& label);
   WindowReduction learn_window(double end, Pod basis);
-  void add_clusters(std::vector<WindowReduction>& windows, const std::vector<VectorView>& moments,
-                    nlohmann::json& facts) const;
+  void add_clusters(std::vector<WindowReduction>& windows, const LearntStates& states, nlohmann::json& facts) const;
   void check(const WindowReduction& window);
   bool clusters() const { return settings_.block.isSublist("clustering"); }
 

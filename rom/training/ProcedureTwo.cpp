@@ -20,6 +20,7 @@
 #include "rom/clustering/SourceClustering.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/Sampling.hpp"
+#include "rom/training/LearnClusters.hpp"
 #include "rom/training/LearnWindows.hpp"
 #include "rom/training/PodFacts.hpp"
 

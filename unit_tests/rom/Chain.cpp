@@ -38,6 +38,11 @@ void Chain::read(const Teuchos::ParameterList& list) {
   reaction_ = list.get<double>("reaction");
   power_ = list.get<double>("power");
   velocity_ = list.get<double>("velocity");
+  list_parameters();
+}
+
+void Chain::list_parameters() {
+  parameters_.add("diffusion", "1/s", &diffusion_);
   parameters_.add("power", "W", &power_);
   parameters_.add("velocity", "m/s", &velocity_);
 }
@@ -77,8 +82,7 @@ Chain::Chain(const Chain& full, const std::vector<GlobalIndex>& rows, std::share
       velocity_(full.velocity_),
       all_rows_(rows),
       clustered_(std::move(clustered)) {
-  parameters_.add("power", "W", &power_);
-  parameters_.add("velocity", "m/s", &velocity_);
+  list_parameters();
   std::sort(all_rows_.begin(), all_rows_.end());
   std::vector<GlobalIndex> mine;
   for (const GlobalIndex id : all_rows_) {

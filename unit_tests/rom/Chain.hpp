@@ -45,6 +45,7 @@ class Chain : public Model, public PairwiseModel {
 
   Chain(const Chain& full, const std::vector<GlobalIndex>& rows, std::shared_ptr<const Clustered> clustered);
   void read(const Teuchos::ParameterList& list);
+  void list_parameters();
   void build(const std::vector<GlobalIndex>& mine, const Teuchos::RCP<const Communicator>& communicator);
   /// Sources of a row, with their weights.
   std::vector<std::pair<GlobalIndex, double>> pairs_of(GlobalIndex row) const;
