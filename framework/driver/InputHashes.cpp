@@ -6,6 +6,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Hash.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Seal.hpp"
 #include "framework/files/Together.hpp"
 
@@ -38,7 +39,7 @@ nlohmann::json input_hashes(const Input& input, const Communicator& communicator
       hashes.push_back({{"file", file}, {kind, data}});
       hashes.back().update(hash_of_data(file));
     }
-    text = hashes.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    text = json_text(hashes);
   }
   return nlohmann::json::parse(broadcast(communicator, text));
 }

@@ -11,6 +11,7 @@
 #include "framework/base/Error.hpp"
 #include "framework/base/Memory.hpp"
 #include "framework/driver/StopRequest.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/observers/Probes.hpp"
 #include "framework/queries/QueryPoints.hpp"
@@ -211,7 +212,7 @@ void QueryRun::report(RunReport& report) const {
   }
   Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 4, mine, all);
   nlohmann::json divergences = nlohmann::json::array();
-  for (const std::string& text : gathered(marked.dump(), *communicator_)) {
+  for (const std::string& text : gathered(json_text(marked), *communicator_)) {
     for (const nlohmann::json& one : nlohmann::json::parse(text)) divergences.push_back(one);
   }
   report.section("queries") = {{"points", answers_.points.count()},

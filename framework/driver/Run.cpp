@@ -20,6 +20,7 @@
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Folders.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/RunFolder.hpp"
 #include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
@@ -171,7 +172,7 @@ void report_solve(RunReport& report, const LoopTotals& totals) {
 
 void write_report(const RunReport& report, const std::filesystem::path& folder, const Comm& communicator, bool quiet) {
   const std::string text = readable(report.facts());
-  write_atomically(folder / "report.json", report.facts().dump(2) + "\n", communicator);
+  write_atomically(folder / "report.json", json_text(report.facts(), 2) + "\n", communicator);
   write_atomically(folder / "report.txt", text, communicator);
   if (!quiet) print(*communicator, text);
 }

@@ -18,6 +18,7 @@
 #include "framework/driver/StudySpecification.hpp"
 #include "framework/driver/StudyStates.hpp"
 #include "framework/files/AtomicFile.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/RunFolder.hpp"
 #include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
@@ -188,7 +189,7 @@ class Runner {
 
   void write_table() {
     const nlohmann::json table = states_table(matrix_.cases, matrix_.inputs, matrix_.states);
-    write_atomically(matrix_.folder() / "study.json", table.dump(2) + "\n", communicator_, false);
+    write_atomically(matrix_.folder() / "study.json", json_text(table, 2) + "\n", communicator_, false);
   }
 
   Matrix& matrix_;

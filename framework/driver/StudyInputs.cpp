@@ -10,6 +10,7 @@
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
 #include "framework/files/Folders.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/input/Override.hpp"
 #include "framework/report/Provenance.hpp"
@@ -127,7 +128,7 @@ nlohmann::json StudyInputs::identity(std::size_t index, const std::string& neede
     for (const std::string& file : inputs_[index].data_files()) {
       if (std::find(made.begin(), made.end(), file) != made.end()) continue;
       // One that is gone since it was checked is told by the case itself.
-      data += hash_of_data(file).dump();
+      data += json_text(hash_of_data(file));
     }
   }
   return {{"kiln", version_},

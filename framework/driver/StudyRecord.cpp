@@ -80,7 +80,7 @@ void write_case_record(const std::filesystem::path& folder, const std::string& n
                                 {"message", record.message},
                                 {"continued", record.continued},
                                 {"written_unix_ns", std::chrono::nanoseconds(moment).count()}};
-  const std::string text = broadcast(*communicator, facts.dump(2) + "\n");
+  const std::string text = broadcast(*communicator, json_text(facts, 2) + "\n");
   write_atomically(file_in(folder), text, communicator);
   record.hash = hash_of(text);
 }

@@ -31,7 +31,9 @@ Id access_properties(const Communicator& communicator, bool parallel) {
   H5Pset_file_locking(properties, false, true);
   // What is written goes to the system at once: a program that is killed must not take small blocks with it.
   H5Pset_sieve_buf_size(properties, 0);
-  if (parallel) H5Pset_fapl_mpio(properties, mpi_communicator(communicator), MPI_INFO_NULL);
+  if (parallel && H5Pset_fapl_mpio(properties, mpi_communicator(communicator), MPI_INFO_NULL) < 0) {
+    return Id(H5I_INVALID_HID, H5Pclose);
+  }
   return properties;
 }
 
@@ -136,13 +138,14 @@ Group Group::create_group(const std::string& name) {
 
 std::vector<std::string> Group::names() const {
   std::vector<std::string> found;
-  H5Literate(
+  const herr_t status = H5Literate(
       node_->id, H5_INDEX_NAME, H5_ITER_INC, nullptr,
       [](hid_t, const char* name, const H5L_info_t*, void* data) -> herr_t {
         static_cast<std::vector<std::string>*>(data)->emplace_back(name);
         return 0;
       },
       &found);
+  if (status < 0) node_->fail("", "cannot be listed" + reason());
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -183,10 +186,10 @@ File File::read(const std::string& path, const Teuchos::RCP<const Communicator>&
 
 File File::modify(const std::string& path, const Teuchos::RCP<const Communicator>& communicator) {
   silence();
-  on_root(*communicator, path, [&] {
+  on_root(*communicator, path, [&]() -> std::optional<Fault> {
     if (const auto fault = cannot_open(path, O_RDWR, "written")) return fault;
     if (const auto fault = not_hdf5(path)) return fault;
-    return vet(path);
+    return read_seal(path, true).empty() ? vet(path) : std::nullopt;
   });
   const bool parallel = communicator->getSize() > 1;
   const Id access = access_properties(*communicator, parallel);

@@ -144,13 +144,14 @@ bool Group::has_attribute(const std::string& name) const { return H5Aexists(node
 
 std::vector<std::string> Group::attribute_names() const {
   std::vector<std::string> found;
-  H5Aiterate2(
+  const herr_t status = H5Aiterate2(
       node_->id, H5_INDEX_NAME, H5_ITER_INC, nullptr,
       [](hid_t, const char* name, const H5A_info_t*, void* data) -> herr_t {
         static_cast<std::vector<std::string>*>(data)->emplace_back(name);
         return 0;
       },
       &found);
+  if (status < 0) node_->fail("", "its attributes cannot be listed" + reason());
   return found;
 }
 

@@ -38,7 +38,10 @@ Selection select(const Dataset& dataset, const std::vector<std::size_t>& start, 
   } else if (!count.empty()) {
     const std::vector<hsize_t> first(start.begin(), start.end());
     const std::vector<hsize_t> extent(count.begin(), count.end());
-    H5Sselect_hyperslab(selection.file, H5S_SELECT_SET, first.data(), nullptr, extent.data(), nullptr);
+    const herr_t selected =
+        H5Sselect_hyperslab(selection.file, H5S_SELECT_SET, first.data(), nullptr, extent.data(), nullptr);
+    // Reading and writing then fail, and say so.
+    if (selected < 0) selection.file = Id(H5I_INVALID_HID, H5Sclose);
   }
   return selection;
 }

@@ -13,4 +13,8 @@ nlohmann::json parse_json(const std::string& text) {
   return too_deep ? nlohmann::json(nlohmann::json::value_t::discarded) : json;
 }
 
+std::string json_text(const nlohmann::json& value, int indent) {
+  return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 }  // namespace kiln

@@ -9,4 +9,8 @@ namespace kiln {
 /// walking through it could exhaust the stack.
 nlohmann::json parse_json(const std::string& text);
 
+/// The text of a JSON value, on one line or, with an `indent`, on many. What is no UTF-8, as the name of a file may be,
+/// comes with U+FFFD in its place.
+std::string json_text(const nlohmann::json& value, int indent = -1);
+
 }  // namespace kiln

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "framework/base/Error.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/model/DegreesOfFreedom.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
@@ -34,7 +35,7 @@ std::map<std::string, std::string> attributes_of(const Observer::Context& contex
   std::map<std::string, std::string> attributes = context.provenance;
   const nlohmann::json facts = provenance(*context.communicator);
   for (const auto& [key, value] : facts.items()) {
-    attributes.emplace(key, value.is_string() ? value.get<std::string>() : value.dump());
+    attributes.emplace(key, value.is_string() ? value.get<std::string>() : json_text(value));
   }
   return attributes;
 }

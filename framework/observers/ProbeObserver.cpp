@@ -10,6 +10,7 @@
 #include "framework/base/Loop.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/CsvTable.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/RunReport.hpp"
@@ -95,7 +96,7 @@ void ProbeObserver::write_places() const {
     place["distance_m"] = probe.particle.distance;
     places.push_back(std::move(place));
   }
-  write_atomically(context_.folder / "probes.json", places.dump(2) + "\n", communicator_);
+  write_atomically(context_.folder / "probes.json", json_text(places, 2) + "\n", communicator_);
 }
 
 void ProbeObserver::observe(const Moment& moment) {
@@ -141,7 +142,7 @@ void ProbeObserver::finish(RunReport& report) {
   log_->flush();
   std::string text;
   on_root(*communicator_, file_.string(), [&]() -> std::optional<Fault> {
-    text = summary().dump();
+    text = json_text(summary());
     return std::nullopt;
   });
   report.section("probes") = nlohmann::json::parse(broadcast(*communicator_, text));

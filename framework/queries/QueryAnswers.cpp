@@ -11,6 +11,7 @@
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/CsvLog.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Json.hpp"
 
 namespace kiln {
 namespace {
@@ -62,7 +63,7 @@ void write_file(const QueryAnswers& answers, const std::string& path,
     file.write_block(field.name, {answers.first, 0, 0}, {own, answers.steps.size(), probes}, values);
     file.attribute_of(field.name, "unit", field.unit);
     file.attribute_of(field.name, "axes", "point, time, probe");
-    file.attribute_of(field.name, "probes", nlohmann::json(answers.probes).dump());
+    file.attribute_of(field.name, "probes", json_text(answers.probes));
   }
   file.flush();
 }

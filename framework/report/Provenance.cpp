@@ -14,6 +14,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 
 // Any symbol of the BLAS: where it was loaded from says which one it is.
@@ -110,7 +111,7 @@ nlohmann::json provenance(const Communicator& communicator) {
   };
   const std::string openblas = openblas_configuration();
   if (!openblas.empty()) facts["openblas"] = openblas;
-  return nlohmann::json::parse(broadcast(communicator, facts.dump()));
+  return nlohmann::json::parse(broadcast(communicator, json_text(facts)));
 }
 
 }  // namespace kiln

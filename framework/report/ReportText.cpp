@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "framework/files/Json.hpp"
+
 namespace kiln {
 namespace {
 
@@ -54,7 +56,7 @@ std::string value_text(const nlohmann::json& value, const std::string& unit) {
   if (unit == "B" && value.is_number()) return size_text(value.get<double>());
   std::string text;
   if (value.is_number_integer()) {
-    text = value.dump();
+    text = json_text(value);
   } else if (value.is_number()) {
     text = fmt::format("{:.6g}", value.get<double>());
   } else {

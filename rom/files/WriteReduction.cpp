@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Seal.hpp"
 #include "framework/report/Provenance.hpp"
 #include "rom/files/ParticleRows.hpp"
@@ -67,7 +68,7 @@ void write_contents(const std::string& file, const Reduction& reduction) {
   const MatrixView reference(reduction.reference.data(), reduction.reference.extent(0), 1);
   hdf5::File root = hdf5::File::create(file, communicator);
   reduction_identity::write(root, reduction.input, reduction.model.parameters());
-  root.attribute("provenance", provenance(*communicator).dump());
+  root.attribute("provenance", json_text(provenance(*communicator)));
   root.attribute("components", static_cast<long long>(components));
   root.attribute("particles", static_cast<long long>(rows.getGlobalNumElements()));
   root.write_rows("reference", rows, fold(reference, components));

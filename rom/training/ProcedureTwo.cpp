@@ -14,6 +14,7 @@
 #include "framework/driver/StopRequest.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Seal.hpp"
 #include "framework/model/Halo.hpp"
 #include "framework/registry/Registry.hpp"
@@ -327,8 +328,8 @@ void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {
   if (trials.ptrom) warn_of(*trials.ptrom, "trial run on clustered sources", report);
   {
     hdf5::File written = hdf5::File::modify(path.temporary(), communicator_);
-    written.attribute("trial", facts["trial"].dump());
-    if (trials.ptrom) written.attribute("trial_clustered", facts["trial_clustered"].dump());
+    written.attribute("trial", json_text(facts["trial"]));
+    if (trials.ptrom) written.attribute("trial_clustered", json_text(facts["trial_clustered"]));
     written.flush();
   }
   hdf5::seal(path.temporary(), *communicator_);
