@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pandas
 
-from harness import SMALL, KilnTest, datasets, main
+from harness import HERE, SMALL, KilnTest, datasets, main
 
 # Largest error of a probe's temperature against the full-order run, relative to the largest rise of any probe. The
 # basis of 12 vectors was learnt from the same run, so its truncation (last singular value kept / largest: 2e-5) and
@@ -55,6 +55,26 @@ class ReductionTest(KilnTest):
         training = json.loads((self.folder / "results" / "training" / "report.json").read_text())["training"]
         self.assertEqual([stage["name"] for stage in training["stages"]][0], "full-order run")
         self.assertGreater(training["sample_meshes"][0]["sigma_min"], 0.0)
+
+    def test_data_files_count_by_content_and_not_by_place(self):
+        there, elsewhere = self.folder / "there", self.folder / "elsewhere"
+        shutil.copytree(HERE / "cases", there)
+
+        def kiln(command, folder, method="gnat"):
+            changes = (f"method.type={method}", "output.directory=moved")
+            return self.kiln(command, folder / "gnat-cloud.yaml", *(w for c in changes for w in ("--set", c)), "--quiet")
+
+        self.assertEqual(kiln("train", there).status, 0)
+        there.rename(elsewhere)
+        outcome = kiln("run", elsewhere)
+        self.assertEqual(outcome.status, 0, outcome.stderr)
+        lines = (elsewhere / "cloud.csv").read_text().splitlines()
+        (elsewhere / "cloud.csv").write_text("\n".join([*lines[:-2], lines[-1], lines[-2]]) + "\n")
+        for method in ("gnat", "lspg"):
+            outcome = kiln("run", elsewhere, method)
+            self.assertEqual(outcome.status, 2, outcome.stderr)
+            self.assertIn("reduction.h5: was learnt from another file than model.particles.path: ", outcome.stderr)
+            self.assertIn("elsewhere/cloud.csv; expected the data it was trained with; or train again", outcome.stderr)
 
     def test_reports_tell_which_reduction_was_read(self):
         shutil.copy(self.folder / "results" / "reduction.h5", self.folder / "copy.h5")

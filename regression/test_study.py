@@ -289,6 +289,25 @@ class StudyTest(KilnTest):
         self.assertIn("cases.0.set.model.kernl (case 'trained')", lines[0])
         self.assertIn("cases.1.set.time.stp (case 'online')", lines[1])
 
+    def test_a_reduced_case_may_use_a_jacobian_that_full_order_lacks(self):
+        shutil.copy(HERE / "cases/vortex-gnat.yaml", self.folder)
+        shutil.copy(HERE / "cases/vortex-patches.yaml", self.folder)
+        sparse = {"method.type": "lspg", "method.file": "{needs}/reduction.h5", "time.newton.jacobian": "sparse"}
+        cases = [
+            {"name": "trained", "command": "train"},
+            {"name": "reduced", "command": "run", "needs": "trained", "set": sparse},
+            {"name": "full", "command": "run", "set": {"method.type": "fom", "time.newton.jacobian": "sparse"}},
+        ]
+        cases = [case | {"input": "vortex-gnat.yaml"} for case in cases]
+        (self.folder / "study.yaml").write_text(json.dumps({"output": "study", "cases": cases[:2]}))
+        self.assertIn("2 complete", self.study("study.yaml").stdout)
+        (self.folder / "study.yaml").write_text(json.dumps({"output": "study", "cases": cases}, indent=1))
+        outcome = self.study("study.yaml", status=2)
+        self.assertRegex(
+            outcome.stderr,
+            r"^study.yaml:\d+:\d+: cases.2.set.time.newton.jacobian \(case 'full'\): .*VortexModel does not offer",
+        )
+
     def test_missing_input_file(self):
         file = self.write(("good", "run", {}))
         (self.folder / "small.yaml").unlink()

@@ -4,10 +4,8 @@
 
 #include <filesystem>
 
-#include "framework/base/Error.hpp"
-#include "framework/base/Hash.hpp"
+#include "framework/files/DataFiles.hpp"
 #include "framework/files/Json.hpp"
-#include "framework/files/Seal.hpp"
 #include "framework/files/Together.hpp"
 
 namespace kiln {
@@ -17,16 +15,6 @@ constexpr const char* kind = "kind";
 constexpr const char* data = "data";
 
 }  // namespace
-
-nlohmann::json hash_of_data(const std::string& file) {
-  try {
-    const std::vector<hdf5::Segment> seal = hdf5::read_seal(file, false);
-    if (!seal.empty()) return {{"seal", hdf5::fingerprint(seal)}};
-    return {{"xxh3", hash_of_file(file)}};
-  } catch (const FileError&) {
-    return {{"xxh3", "unreadable"}};
-  }
-}
 
 nlohmann::json input_hashes(const Input& input, const Communicator& communicator) {
   std::string text;

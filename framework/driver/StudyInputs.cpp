@@ -9,6 +9,7 @@
 #include "framework/driver/InputHashes.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
+#include "framework/files/DataFiles.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
@@ -94,7 +95,10 @@ void StudyInputs::build(const std::vector<std::size_t>& indices) const {
   for (const std::size_t i : indices) {
     const StudyCase& item = cases_[i];
     std::vector<std::string> overrides = item.all_overrides();
+    const bool reduced = inputs_[i].list().sublist("method").get<std::string>("type") != "fom";
     overrides.emplace_back("method={type: fom}");
+    // A reduced run may use a form of the Jacobian that the full order's would lack.
+    if (reduced && !is_training(item)) overrides.emplace_back("time.newton.jacobian=finite difference");
     try {
       const Input full_order = Input::read(item.input, overrides, run_specification(), *communicator_, promised(i));
       Teuchos::ParameterList list = full_order.list();

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/files/DataFiles.hpp"
 #include "framework/input/Units.hpp"
 #include "framework/registry/EntryText.hpp"
 #include "framework/registry/Nearest.hpp"
@@ -173,7 +174,7 @@ void ValueReader::read(const YamlNode& node, const Entry& entry, const std::stri
         break;
       case Kind::file:
         require_scalar(node);
-        list.set(entry.key, file(node.text, node.location));
+        list.set(entry.key, file(node.text, node.location), names_data_file);
         break;
       default:
         throw std::logic_error(fmt::format("the key '{}' holds no value", entry.key));
@@ -244,7 +245,7 @@ void ValueReader::set_default(const Entry& entry, const std::string& path, const
     case Kind::file:
       if (text_value == nullptr) break;
       try {
-        list.set(entry.key, file(*text_value, {}));
+        list.set(entry.key, file(*text_value, {}), names_data_file);
       } catch (const InputError& error) {
         mistakes_.add(location, at(path, error, entry));
       }

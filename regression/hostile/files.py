@@ -240,7 +240,7 @@ def reduction_cases(sound, chance):
     def case(what, change, arguments=GNAT):
         return Case(f"{REDUCTION}: {what}", edited(REDUCTION, change), arguments, re.escape(REDUCTION) + ": ")
 
-    for group in ("windows", "particles", "time", "parameters", "windows/0", "windows/0/basis", mesh, f"{mesh}/model",
+    for group in ("windows", "particles", "time", "parameters", "data_files", "windows/0", "windows/0/basis", mesh, f"{mesh}/model",
                   f"{mesh}/model/material"):  # fmt: skip
         yield case(f"no group {group}", lambda file, group=group: file.__delitem__(group))
         yield case(f"a dataset instead of the group {group}", lambda file, group=group: (

@@ -40,6 +40,7 @@ struct Reduction {
 ///     attributes      format, format_version, model_type, model_input (checked, as YAML), model_hash, provenance,
 ///                     components, particles; trial (JSON), the errors of the training's trial run;
 ///                     trial_clustered (JSON), those of the clustered mesh's, where there is one
+///     /data_files     hashes of the data files that model_input names, one attribute (JSON) each
 ///     /parameters     live parameters of the model at training, one attribute each
 ///     /time           step in s and scheme (as YAML) of the training
 ///     /reference      u_ref (N)

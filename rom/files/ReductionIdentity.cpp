@@ -6,6 +6,9 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Hash.hpp"
+#include "framework/files/DataFiles.hpp"
+#include "framework/files/Json.hpp"
+#include "framework/files/Together.hpp"
 #include "framework/input/Input.hpp"
 #include "rom/files/YamlDifference.hpp"
 
@@ -47,6 +50,13 @@ std::string format_of(const hdf5::Group& root) {
   }
 }
 
+constexpr const char* data_group = "data_files";
+
+/// The hash of a data file, read by rank 0 alone. Collective.
+std::string data_hash(const std::string& file, const Communicator& communicator) {
+  return broadcast(communicator, communicator.getRank() == 0 ? json_text(hash_of_data(file)) : std::string());
+}
+
 /// The scheme's block without its name, so that texts compare.
 std::string scheme_text(const Teuchos::ParameterList& time) { return to_yaml(time.sublist("scheme")); }
 
@@ -60,6 +70,10 @@ void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Paramet
   root.attribute("model_type", model.get<std::string>("type"));
   root.attribute("model_input", text);
   root.attribute("model_hash", hash_of(text));
+  hdf5::Group data = root.create_group(data_group);
+  for (const DataFile& named : data_files(model)) {
+    data.attribute(named.path, data_hash(named.file, root.communicator()));
+  }
   hdf5::Group live = root.create_group("parameters");
   for (const Parameter& parameter : parameters.list()) live.attribute(parameter.name, *parameter.value);
   const Teuchos::ParameterList& time = input.sublist("time");
@@ -84,10 +98,23 @@ void require_model(const hdf5::Group& root, const Teuchos::ParameterList& model)
   if (hash_of(trained) != root.text("model_hash")) {
     throw FileError(root.file(), "model_input", "does not match its hash: the file was changed after training");
   }
-  std::vector<std::string> live;
-  for (const std::string& name : root.group("parameters").attribute_names()) live.push_back("model." + name);
-  const std::vector<YamlDifference> entries = differences_to(root, "model_input", to_yaml(model), "model", live);
-  if (entries.empty()) return;
+  std::vector<std::string> except;
+  for (const std::string& name : root.group("parameters").attribute_names()) except.push_back("model." + name);
+  const hdf5::Group data = root.group(data_group);
+  std::vector<std::string> changed;
+  for (const DataFile& named : data_files(model)) {
+    if (!data.has_attribute(named.path)) continue;
+    except.push_back(named.path);
+    if (data.text(named.path) != data_hash(named.file, root.communicator())) {
+      changed.push_back(fmt::format("{}: {}", named.path, named.file));
+    }
+  }
+  const std::vector<YamlDifference> entries = differences_to(root, "model_input", to_yaml(model), "model", except);
+  if (entries.empty() && changed.empty()) return;
+  if (entries.empty()) {
+    throw FileError(root.file(), "", fmt::format("was learnt from another file than {}", fmt::join(changed, " and ")),
+                    "the data it was trained with; or train again");
+  }
   throw FileError(root.file(), "", "belongs to another model: " + named(entries),
                   "the model it was trained for; or train again");
 }

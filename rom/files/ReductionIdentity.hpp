@@ -12,15 +12,17 @@ namespace kiln {
 namespace reduction_identity {
 
 constexpr const char* format = "kiln reduction";
-constexpr long long version = 3;
+constexpr long long version = 4;
 
-/// Writes format, version, the model's checked block with its hash, its live parameters, time step and scheme.
+/// Writes format, version, the model's checked block with its hash, hashes of the data files it names, its live
+/// parameters, time step and scheme.
 void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Parameters& parameters);
 
 /// Throws FileError for a file that is no reduction, or one of another format version.
 void require_format(const hdf5::Group& root);
 /// Throws FileError that names the first entries that differ from the block `model` of the input, the live parameters
-/// apart: these may be set anew for each run.
+/// apart: these may be set anew for each run. Of entries that name data files it is the content that counts, not where
+/// the file lies. Collective.
 void require_model(const hdf5::Group& root, const Teuchos::ParameterList& model);
 /// Throws FileError for a time step or scheme that differs from the block `time` of the input.
 void require_time(const hdf5::Group& root, const Teuchos::ParameterList& time);

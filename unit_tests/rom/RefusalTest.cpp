@@ -164,7 +164,7 @@ TEST_F(Refusal, ATruncatedFile) {
 
 TEST_F(Refusal, AnotherFormatVersion) {
   spoil([](hdf5::File& file) { file.attribute("format_version", 7); });
-  EXPECT_EQ(opening("gnat"), file_ + ": format_version: is 7; expected 3: train again with this version of Kiln");
+  EXPECT_EQ(opening("gnat"), file_ + ": format_version: is 7; expected 4: train again with this version of Kiln");
 }
 
 TEST_F(Refusal, AFileThatLostItsSeal) {
