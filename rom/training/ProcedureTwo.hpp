@@ -8,7 +8,7 @@
 #include "framework/driver/TimeLoop.hpp"
 #include "framework/method/Trainer.hpp"
 #include "framework/model/Model.hpp"
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 #include "rom/files/Reduction.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/training/FullOrderRuns.hpp"

@@ -1,4 +1,4 @@
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 
 #include <array>
 #include <utility>
