@@ -13,10 +13,10 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/ExitStatus.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/Run.hpp"
 #include "framework/driver/RunSpecification.hpp"
-#include "framework/driver/StopRequest.hpp"
 #include "framework/driver/Study.hpp"
 #include "framework/driver/StudySpecification.hpp"
 #include "framework/files/AtomicFile.hpp"

@@ -8,11 +8,11 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/ExitStatus.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/Run.hpp"
-#include "framework/driver/StopRequest.hpp"
 #include "framework/driver/StudyCases.hpp"
 #include "framework/driver/StudyProgress.hpp"
 #include "framework/driver/StudySpecification.hpp"
