@@ -13,6 +13,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/ExitStatus.hpp"
+#include "framework/base/Nearest.hpp"
 #include "framework/base/StopRequest.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/Run.hpp"
@@ -25,7 +26,6 @@
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugins.hpp"
 #include "framework/registry/Describe.hpp"
-#include "framework/registry/Nearest.hpp"
 #include "framework/registry/Reference.hpp"
 #include "framework/registry/Schema.hpp"
 #include "framework/report/Provenance.hpp"

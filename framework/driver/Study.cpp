@@ -21,7 +21,6 @@
 #include "framework/files/RunFolder.hpp"
 #include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
-#include "framework/input/Mistakes.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/report/Timing.hpp"
 

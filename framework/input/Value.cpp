@@ -8,9 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "framework/input/Units.hpp"
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
+#include "framework/base/Units.hpp"
 #include "framework/registry/EntryText.hpp"
-#include "framework/registry/Nearest.hpp"
 
 namespace kiln {
 namespace {

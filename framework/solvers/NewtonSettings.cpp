@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "framework/base/Error.hpp"
-#include "framework/registry/Nearest.hpp"
+#include "framework/base/Nearest.hpp"
 #include "framework/solvers/LinearSolver.hpp"
 
 namespace kiln {
