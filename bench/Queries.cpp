@@ -7,12 +7,12 @@
 #include "bench/Figures.hpp"
 #include "bench/Program.hpp"
 #include "framework/driver/RunSpecification.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/input/Input.hpp"
 #include "framework/observers/Probes.hpp"
 #include "framework/queries/PointBlock.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/report/Provenance.hpp"
+#include "framework/time/TimeLoop.hpp"
 
 namespace kiln::bench {
 namespace {
@@ -30,16 +30,14 @@ ParameterPoints points_around(const Parameters& parameters, std::size_t count) {
 }
 
 /// Keeps the probes of every step.
-class Keep final : public Observer {
+class Keep final : public StepListener {
  public:
   Keep(Method::Reader reader, std::size_t width, std::vector<double>& values)
       : reader_(std::move(reader)), told_("probes", width), values_(values) {}
-  void begin() override {}
   void observe(const Moment& moment) override {
     reader_(moment.x, told_);
     values_.insert(values_.end(), told_.data(), told_.data() + told_.extent(0));
   }
-  void finish(RunReport&) override {}
 
  private:
   Method::Reader reader_;

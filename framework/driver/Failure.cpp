@@ -11,7 +11,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/ExitStatus.hpp"
-#include "framework/driver/StopRequest.hpp"
+#include "framework/base/StopRequest.hpp"
 
 namespace kiln {
 namespace {

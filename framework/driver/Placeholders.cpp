@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "framework/base/Error.hpp"
-#include "framework/input/Mistakes.hpp"
-#include "framework/registry/Nearest.hpp"
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
 
 namespace kiln {
 namespace {

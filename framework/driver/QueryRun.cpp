@@ -10,7 +10,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Memory.hpp"
-#include "framework/driver/StopRequest.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/observers/Probes.hpp"
@@ -44,11 +44,10 @@ std::vector<std::string> gathered(const std::string& text, const Communicator& c
 }
 
 /// Keeps what a run of one point shows.
-class Recorder final : public Observer {
+class Recorder final : public StepListener {
  public:
   using Keep = std::function<void(int step, ConstVectorView x)>;
   Recorder(PointOutcome& outcome, Keep keep) : outcome_(outcome), keep_(std::move(keep)) {}
-  void begin() override {}
   void observe(const Moment& moment) override {
     outcome_.steps = moment.step;
     outcome_.residuals += moment.solve.residuals;
@@ -56,7 +55,6 @@ class Recorder final : public Observer {
     outcome_.capped_steps += moment.solve.converged ? 0 : 1;
     keep_(moment.step, moment.x);
   }
-  void finish(RunReport&) override {}
 
  private:
   PointOutcome& outcome_;

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/queries/QueryAnswers.hpp"
 #include "framework/report/RunReport.hpp"
+#include "framework/time/TimeLoop.hpp"
 
 namespace kiln {
 

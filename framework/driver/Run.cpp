@@ -11,13 +11,12 @@
 #include <memory>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/InputHashes.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/QueryRun.hpp"
 #include "framework/driver/RunSpecification.hpp"
-#include "framework/driver/StopRequest.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/Json.hpp"
@@ -33,6 +32,7 @@
 #include "framework/report/ReportText.hpp"
 #include "framework/report/RunReport.hpp"
 #include "framework/report/Timing.hpp"
+#include "framework/time/TimeLoop.hpp"
 
 namespace kiln {
 namespace {
@@ -93,9 +93,9 @@ class Assembly {
   }
 
   void march(LoopTotals& totals) {
-    std::vector<Observer*> observers;
-    for (const auto& observer : observers_) observers.push_back(observer.get());
-    run_time_loop(*method_, *scheme_, x_, span_, observers, totals);
+    std::vector<StepListener*> listeners;
+    for (const auto& observer : observers_) listeners.push_back(observer.get());
+    run_time_loop(*method_, *scheme_, x_, span_, listeners, totals);
   }
 
   void finish(RunReport& report) {

@@ -4,7 +4,7 @@
 #include "framework/method/Trainer.hpp"
 #include "framework/observers/Observer.hpp"
 #include "framework/queries/QueryPoints.hpp"
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 #include "framework/time/TimeScheme.hpp"
 
 namespace kiln {

@@ -8,11 +8,11 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/ExitStatus.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/Failure.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/Run.hpp"
-#include "framework/driver/StopRequest.hpp"
 #include "framework/driver/StudyCases.hpp"
 #include "framework/driver/StudyProgress.hpp"
 #include "framework/driver/StudySpecification.hpp"
@@ -22,7 +22,6 @@
 #include "framework/files/RunFolder.hpp"
 #include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
-#include "framework/input/Mistakes.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/report/Timing.hpp"
 

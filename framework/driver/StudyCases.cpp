@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <map>
 
-#include "framework/input/Mistakes.hpp"
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
 #include "framework/registry/EntryText.hpp"
-#include "framework/registry/Nearest.hpp"
 
 namespace kiln {
 namespace {

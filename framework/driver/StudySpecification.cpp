@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "framework/input/Mistakes.hpp"
+#include "framework/base/Error.hpp"
 
 namespace kiln {
 namespace {

@@ -12,9 +12,9 @@
 #include <string_view>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Text.hpp"
 #include "framework/files/CsvRows.hpp"
 #include "framework/files/Together.hpp"
-#include "framework/input/Mistakes.hpp"
 
 namespace kiln {
 namespace {

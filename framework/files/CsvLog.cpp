@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "framework/base/Text.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Together.hpp"
-#include "framework/input/Mistakes.hpp"
 
 namespace kiln {
 namespace {

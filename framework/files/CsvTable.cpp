@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Text.hpp"
 #include "framework/files/CsvRows.hpp"
-#include "framework/input/Mistakes.hpp"
 
 namespace kiln {
 namespace {

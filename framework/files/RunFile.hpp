@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "framework/base/ExchangeInterval.hpp"
+#include "framework/base/Field.hpp"
 #include "framework/base/LinearAlgebra.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/RowOrder.hpp"
 #include "framework/files/Xdmf.hpp"
-#include "framework/model/Model.hpp"
 
 namespace kiln {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/model/Model.hpp"
+#include "framework/base/Field.hpp"
 
 namespace kiln {
 

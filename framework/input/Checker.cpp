@@ -5,8 +5,9 @@
 
 #include <algorithm>
 
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
 #include "framework/registry/EntryText.hpp"
-#include "framework/registry/Nearest.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "framework/base/Text.hpp"
+
 namespace kiln {
 namespace {
 

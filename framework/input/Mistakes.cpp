@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "framework/input/TextCheck.hpp"
+#include "framework/base/Text.hpp"
 
 namespace kiln {
 
@@ -42,35 +42,5 @@ InputError Mistakes::error() const {
   }
   return InputError(std::move(problems));
 }
-
-namespace {
-
-std::string escaped(const std::string& text, std::size_t longest) {
-  std::string result;
-  std::size_t characters = 0;
-  for (std::size_t i = 0; i < text.size();) {
-    if (++characters > longest) return result + "...";
-    const std::size_t length = character_length(text, i);
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte == '\n') {
-      result += "\\n";
-    } else if (byte == '\t') {
-      result += "\\t";
-    } else if (length == 0 || byte < 0x20 || byte == 0x7f) {
-      result += fmt::format("\\x{:02x}", byte);
-    } else {
-      result += text.substr(i, length);
-    }
-    i += std::max<std::size_t>(1, length);
-  }
-  return result;
-}
-
-}  // namespace
-
-std::string printable(const std::string& text) { return escaped(text, text.size()); }
-std::string shown(const std::string& text, std::size_t longest) { return escaped(text, longest); }
-
-std::string in_quotes(const std::string& text) { return "'" + shown(text) + "'"; }
 
 }  // namespace kiln

@@ -32,11 +32,4 @@ class Mistakes {
   std::vector<Mistake> mistakes_;
 };
 
-/// `text` for a message: control characters and bytes that are no UTF-8 escaped.
-std::string printable(const std::string& text);
-/// The same, cut after 60 characters.
-std::string shown(const std::string& text, std::size_t longest = 60);
-/// The same in single quotes.
-std::string in_quotes(const std::string& text);
-
 }  // namespace kiln

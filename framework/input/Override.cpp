@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "framework/base/Text.hpp"
+
 namespace kiln {
 namespace {
 

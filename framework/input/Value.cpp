@@ -8,10 +8,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
+#include "framework/base/Units.hpp"
 #include "framework/files/DataFiles.hpp"
-#include "framework/input/Units.hpp"
 #include "framework/registry/EntryText.hpp"
-#include "framework/registry/Nearest.hpp"
 
 namespace kiln {
 namespace {

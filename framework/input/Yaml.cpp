@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "framework/base/Text.hpp"
 #include "framework/input/TextCheck.hpp"
 
 namespace kiln {

@@ -4,8 +4,8 @@
 
 #include "framework/method/Method.hpp"
 #include "framework/model/Halo.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 #include "framework/solvers/StepJacobian.hpp"
-#include "framework/time/NewtonSettings.hpp"
 
 namespace kiln {
 

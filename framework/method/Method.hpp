@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
+#include "framework/method/StepResidual.hpp"
 #include "framework/model/Model.hpp"
-#include "framework/time/StepResidual.hpp"
 
 namespace Teuchos {
 class ParameterList;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/base/Field.hpp"
 #include "framework/base/LinearAlgebra.hpp"
 #include "framework/model/ParameterPoints.hpp"
 #include "framework/model/Parameters.hpp"
@@ -16,14 +17,6 @@ class Group;
 }
 
 class PointRates;
-
-/// One component of a particle's state, e.g. {"temperature", "K"}.
-struct Field {
-  std::string name;
-  std::string unit;
-  bool origin_is_free =
-      false;  ///< as of a position: only differences of values mean something, and errors relate to them
-};
 
 /// A full-order model: the semi-discrete system du/dt = f(u, t; µ) of Eq. 12, on this rank's rows.
 ///

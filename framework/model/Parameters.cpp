@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "framework/base/Error.hpp"
-#include "framework/registry/Nearest.hpp"
+#include "framework/base/Nearest.hpp"
 
 namespace kiln {
 

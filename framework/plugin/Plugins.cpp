@@ -16,12 +16,12 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/base/ExitStatus.hpp"
+#include "framework/base/Sha256.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugin.hpp"
 #include "framework/plugin/SharedLibrary.hpp"
 #include "framework/registry/Library.hpp"
 #include "framework/registry/Registry.hpp"
-#include "framework/report/Sha256.hpp"
 
 namespace kiln::plugins {
 namespace {

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Units.hpp"
 #include "framework/files/CsvTable.hpp"
-#include "framework/input/Units.hpp"
-#include "framework/registry/Nearest.hpp"
 
 namespace kiln {
 namespace {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "framework/base/Nearest.hpp"
 #include "framework/registry/Library.hpp"
-#include "framework/registry/Nearest.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln::catalogue {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 
-#include "framework/input/Mistakes.hpp"
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
 #include "framework/registry/EntryText.hpp"
-#include "framework/registry/Nearest.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "framework/input/Units.hpp"
+#include "framework/base/Units.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln {

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "framework/input/Units.hpp"
+#include "framework/base/Units.hpp"
 #include "framework/registry/EntryText.hpp"
 #include "framework/registry/Registry.hpp"
 

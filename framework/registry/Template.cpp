@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/input/Mistakes.hpp"
+#include "framework/base/Nearest.hpp"
+#include "framework/base/Text.hpp"
 #include "framework/registry/Describe.hpp"
 #include "framework/registry/EntryText.hpp"
-#include "framework/registry/Nearest.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "framework/solvers/JacobianAction.hpp"
 #include "framework/solvers/StepOperator.hpp"
-#include "framework/time/JacobianAction.hpp"
 
 namespace kiln {
 namespace {

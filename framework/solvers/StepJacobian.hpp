@@ -5,7 +5,7 @@
 #include "framework/model/Halo.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/solvers/LinearSolver.hpp"
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 
 namespace kiln {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/model/Halo.hpp"
-#include "framework/time/JacobianAction.hpp"
+#include "framework/solvers/JacobianAction.hpp"
 
 namespace kiln {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/method/Method.hpp"
-#include "framework/time/StepResidual.hpp"
+#include "framework/method/StepResidual.hpp"
 
 namespace kiln {
 

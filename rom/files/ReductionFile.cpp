@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Folders.hpp"
 #include "framework/files/Together.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/files/ReductionIdentity.hpp"
 
 namespace kiln {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "framework/method/StepResidual.hpp"
 #include "framework/model/Model.hpp"
-#include "framework/time/JacobianAction.hpp"
-#include "framework/time/NewtonSettings.hpp"
-#include "framework/time/StepResidual.hpp"
+#include "framework/solvers/JacobianAction.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 #include "rom/basis/TrialSpace.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 #include "rom/projection/TestBasis.hpp"

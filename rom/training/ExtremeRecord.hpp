@@ -2,18 +2,17 @@
 
 #include <vector>
 
-#include "framework/observers/Observer.hpp"
+#include "framework/method/Method.hpp"
+#include "framework/time/StepListener.hpp"
 
 namespace kiln {
 
 /// Writes down after every step which particles have the highest and the lowest value of each component, so that a
 /// reduction can go on telling extremes.
-class ExtremeRecord : public Observer {
+class ExtremeRecord : public StepListener {
  public:
   explicit ExtremeRecord(Method& method);
-  void begin() override {}
   void observe(const Moment& moment) override;
-  void finish(RunReport&) override {}
   /// Their ids, as found. Collective.
   std::vector<GlobalIndex> ids() const;
 

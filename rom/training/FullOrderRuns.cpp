@@ -107,16 +107,16 @@ void FullOrderRuns::run_at(std::size_t point) {
   const std::string label = points_.count() == 1 ? std::string("full order")
                                                  : fmt::format("full order, point {}/{}", point + 1, points_.count());
   ProgressObserver progress(label, 0, *communicator_);
-  std::vector<Observer*> observers{&record, &states};
-  if (point < learnt_) observers.insert(observers.end(), {&every, &extremes});
-  if (!settings_.quiet) observers.push_back(&progress);
+  std::vector<StepListener*> listeners{&record, &states};
+  if (point < learnt_) listeners.insert(listeners.end(), {&every, &extremes});
+  if (!settings_.quiet) listeners.push_back(&progress);
 
   VectorView x("kiln::rom::unknown", method_.row_size());
   method_.initial(x);
   const std::unique_ptr<TimeScheme> scheme = Registry<TimeScheme>::create(
       input_.sublist("time").sublist("scheme"), TimeScheme::Context{method_, settings_.span.step});
   scheme->start(x, 0.0);
-  totals_.push_back(run_time_loop(method_, *scheme, x, settings_.span, observers));
+  totals_.push_back(run_time_loop(method_, *scheme, x, settings_.span, listeners));
   const std::vector<GlobalIndex> found = extremes.ids();
   extremes_.insert(extremes_.end(), found.begin(), found.end());
   trial.query_values = record.values();

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/method/FullOrder.hpp"
 #include "framework/registry/Specification.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/pod/Snapshots.hpp"
 #include "rom/training/TrialRun.hpp"
 

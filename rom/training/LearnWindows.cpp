@@ -74,8 +74,8 @@ LearntStates LearnWindows::march(std::vector<Marcher>& marchers, std::size_t win
         marchers.size() == 1 ? label : fmt::format("{}, point {}/{}", label, point + 1, marchers.size()), first_step,
         *communicator_);
     UnknownRecord record(steps);
-    std::vector<Observer*> observers{&record};
-    if (!settings_.quiet) observers.push_back(&progress);
+    std::vector<StepListener*> listeners{&record};
+    if (!settings_.quiet) listeners.push_back(&progress);
     if (clusters()) {
       states.coordinates.emplace_back("kiln::rom::unknown", marcher.x.extent(0));
       Kokkos::deep_copy(states.coordinates.back(), marcher.x);
@@ -83,7 +83,7 @@ LearntStates LearnWindows::march(std::vector<Marcher>& marchers, std::size_t win
     full_order_.go_to(point);
     lspg_.projection(window).forget_jacobian();
     const LoopTotals part =
-        run_time_loop(lspg_, *marcher.scheme, marcher.x, {settings_.span.step, first_step, last_step}, observers);
+        run_time_loop(lspg_, *marcher.scheme, marcher.x, {settings_.span.step, first_step, last_step}, listeners);
     states.coordinates.insert(states.coordinates.end(), record.unknowns().begin(), record.unknowns().end());
     states.at.resize(states.coordinates.size(), point);
     totals_.steps += part.steps;

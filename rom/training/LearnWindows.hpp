@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/driver/TimeLoop.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "framework/time/TimeScheme.hpp"
 #include "rom/files/Reduction.hpp"
 #include "rom/pod/Pod.hpp"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/StopRequest.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Json.hpp"

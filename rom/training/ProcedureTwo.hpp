@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/method/Trainer.hpp"
 #include "framework/model/Model.hpp"
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/files/Reduction.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/training/FullOrderRuns.hpp"

@@ -1,19 +1,18 @@
 #pragma once
 
-#include "framework/observers/Observer.hpp"
+#include "framework/method/Method.hpp"
+#include "framework/time/StepListener.hpp"
 #include "rom/pod/Snapshots.hpp"
 
 namespace kiln {
 
 /// Collects u − u0 of every `every`-th step and of the last one into snapshots over the method's particles.
-class SnapshotObserver : public Observer {
+class SnapshotObserver : public StepListener {
  public:
   /// Both must outlive the observer. Takes u0 from the method.
   SnapshotObserver(Method& method, Snapshots& snapshots, int every);
 
-  void begin() override {}
   void observe(const Moment& moment) override;
-  void finish(RunReport&) override {}
 
  private:
   Method& method_;
@@ -23,13 +22,11 @@ class SnapshotObserver : public Observer {
 };
 
 /// Collects u − u0 of given steps, ascending, which must outlive the observer.
-class StateRecord : public Observer {
+class StateRecord : public StepListener {
  public:
   StateRecord(Method& method, const std::vector<int>& steps, Snapshots& states);
 
-  void begin() override {}
   void observe(const Moment& moment) override;
-  void finish(RunReport&) override {}
 
  private:
   const std::vector<int>& steps_;

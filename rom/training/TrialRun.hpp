@@ -7,22 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/model/ParameterPoints.hpp"
-#include "framework/observers/Observer.hpp"
+#include "framework/time/StepListener.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/pod/Snapshots.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
 
 namespace kiln {
 
 /// Writes down the state of given particles at every step.
-class QueryRecord : public Observer {
+class QueryRecord : public StepListener {
  public:
   /// ids: ascending, all among the method's particles.
   QueryRecord(Method& method, const std::vector<GlobalIndex>& ids);
-  void begin() override {}
   void observe(const Moment& moment) override;
-  void finish(RunReport&) override {}
   /// One row a step observed, ids × components; the same on every rank. Collective.
   std::vector<double> values() const;
 

@@ -3,22 +3,20 @@
 #include <algorithm>
 #include <vector>
 
-#include "framework/observers/Observer.hpp"
+#include "framework/time/StepListener.hpp"
 
 namespace kiln {
 
 /// Keeps the unknown x of given steps, ascending, which must outlive the observer.
-class UnknownRecord : public Observer {
+class UnknownRecord : public StepListener {
  public:
   explicit UnknownRecord(const std::vector<int>& steps) : steps_(steps) {}
-  void begin() override {}
   void observe(const Moment& moment) override {
     if (!std::binary_search(steps_.begin(), steps_.end(), moment.step)) return;
     unknowns_.emplace_back("kiln::rom::unknown", moment.x.extent(0));
     times_.push_back(moment.time);
     Kokkos::deep_copy(unknowns_.back(), moment.x);
   }
-  void finish(RunReport&) override {}
   const std::vector<VectorView>& unknowns() const { return unknowns_; }
   const std::vector<double>& times() const { return times_; }
 

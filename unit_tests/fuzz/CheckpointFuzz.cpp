@@ -1,9 +1,9 @@
 #include "framework/driver/Checkpoint.hpp"
 #include "framework/driver/RunSpecification.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/input/Input.hpp"
 #include "framework/registry/Registry.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "unit_tests/fuzz/Edits.hpp"
 #include "unit_tests/fuzz/Harness.hpp"
 

@@ -6,8 +6,8 @@
 #include <cerrno>
 
 #include "Projections.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/method/Trainer.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 
 // Every allocation of the process passes through here: those of C++, Kokkos, MPI and HDF5 alike.

@@ -8,9 +8,9 @@
 
 #include "Projections.hpp"
 #include "framework/base/Error.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/model/MaskedModel.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/projection/FullSize.hpp"
 
 namespace kiln {

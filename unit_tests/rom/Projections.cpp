@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/method/Trainer.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/projection/FullSize.hpp"
 #include "rom/sampling/GappyOperator.hpp"
 
@@ -113,13 +113,13 @@ std::unique_ptr<Method> method_of(Case values, const std::string& type,
   return Registry<Method>::create(input.sublist("method"), Method::Context{input, communicator});
 }
 
-std::vector<double> march(Method& method, const Case& values, const std::vector<Observer*>& observers) {
+std::vector<double> march(Method& method, const Case& values, const std::vector<StepListener*>& listeners) {
   VectorView x("x", local_size(*method.coordinates()));
   method.initial(x);
   const auto scheme = Registry<TimeScheme>::create(input_of(values).sublist("time").sublist("scheme"),
                                                    TimeScheme::Context{method, values.step});
   scheme->start(x, 0.0);
-  run_time_loop(method, *scheme, x, {values.step, 0, values.steps}, observers);
+  run_time_loop(method, *scheme, x, {values.step, 0, values.steps}, listeners);
   return gathered_state(method, x);
 }
 

@@ -4,8 +4,8 @@
 
 #include "Chain.hpp"
 #include "framework/method/FullOrder.hpp"
-#include "framework/observers/Observer.hpp"
 #include "framework/report/RunReport.hpp"
+#include "framework/time/StepListener.hpp"
 #include "framework/time/TimeScheme.hpp"
 #include "rom/basis/TimeWindow.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
@@ -44,7 +44,7 @@ std::unique_ptr<Method> method_of(Case values, const std::string& type,
 
 /// Marches through the case's steps and returns the state of all the method's particles at the end, by id, on every
 /// rank.
-std::vector<double> march(Method& method, const Case& values, const std::vector<Observer*>& observers = {});
+std::vector<double> march(Method& method, const Case& values, const std::vector<StepListener*>& listeners = {});
 std::vector<double> gathered_state(const Method& method, ConstVectorView x);
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b);

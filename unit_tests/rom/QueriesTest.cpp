@@ -6,9 +6,9 @@
 #include <set>
 
 #include "Projections.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/model/PointRates.hpp"
 #include "framework/queries/PointBlock.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 
 namespace kiln {

@@ -99,17 +99,15 @@ TEST_P(Training, IsTheSameOnAnyNumberOfRanks) {
 }
 
 /// Which particles a full-order run's highest and lowest values stood at.
-class Extremal final : public Observer {
+class Extremal final : public StepListener {
  public:
   explicit Extremal(const Method& method) : method_(method) {}
-  void begin() override {}
   void observe(const Moment& moment) override {
     if (moment.step == 0) return;
     const std::vector<double> state = test::gathered_state(method_, moment.x);
     ids.insert(std::min_element(state.begin(), state.end()) - state.begin());
     ids.insert(std::max_element(state.begin(), state.end()) - state.begin());
   }
-  void finish(RunReport&) override {}
   std::set<GlobalIndex> ids;
 
  private:

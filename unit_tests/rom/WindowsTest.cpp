@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "Projections.hpp"
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/basis/AffineBasis.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 #include "rom/pod/Pod.hpp"

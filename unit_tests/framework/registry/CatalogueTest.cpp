@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "framework/input/Units.hpp"
+#include "framework/base/Units.hpp"
 #include "framework/registry/Library.hpp"
-#include "framework/registry/Nearest.hpp"
 #include "unit_tests/framework/input/TestComponents.hpp"
 
 namespace kiln::test {
@@ -89,17 +88,6 @@ TEST(Catalogue, AllEntriesHaveHelpAndUnitsOfTheSi) {
     expect_coherent_units(registration->specification(), registration->category + " " + registration->name);
   }
   expect_coherent_units(run_specification(), "run");
-}
-
-TEST(Nearest, AllowsAThirdOfTheWord) {
-  EXPECT_EQ(nearest("powr", {"width", "power"}), "power");
-  EXPECT_EQ(nearest("wdith", {"width", "power"}), "width");
-  EXPECT_EQ(nearest("POWER", {"power"}), "power");
-  EXPECT_EQ(nearest("xyz", {"width", "power"}), "");
-  EXPECT_EQ(nearest("ab", {"ac"}), "ac");
-  EXPECT_EQ(nearest("ab", {"cd"}), "");
-  EXPECT_EQ(nearest("", {"a"}), "a");
-  EXPECT_EQ(nearest(std::string(100, 'a'), {std::string(100, 'a')}), "");
 }
 
 }  // namespace

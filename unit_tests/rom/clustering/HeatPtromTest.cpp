@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/method/Trainer.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 #include "unit_tests/physics/sph/HeatCase.hpp"
 #include "unit_tests/rom/Projections.hpp"

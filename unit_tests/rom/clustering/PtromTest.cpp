@@ -6,9 +6,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "framework/driver/TimeLoop.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/method/Trainer.hpp"
+#include "framework/time/TimeLoop.hpp"
 #include "rom/files/ClusteredMesh.hpp"
 #include "unit_tests/framework/files/TestFolder.hpp"
 #include "unit_tests/rom/Projections.hpp"

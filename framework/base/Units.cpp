@@ -1,4 +1,4 @@
-#include "framework/input/Units.hpp"
+#include "framework/base/Units.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "framework/base/Error.hpp"
+#include "framework/base/Nearest.hpp"
 #include "framework/base/Pi.hpp"
-#include "framework/input/Mistakes.hpp"
-#include "framework/registry/Nearest.hpp"
+#include "framework/base/Text.hpp"
 
 namespace kiln {
 namespace {

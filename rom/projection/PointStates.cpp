@@ -1,9 +1,9 @@
-#include "rom/queries/PointStates.hpp"
+#include "rom/projection/PointStates.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "rom/queries/PointProducts.hpp"
+#include "rom/projection/PointProducts.hpp"
 
 namespace kiln {
 

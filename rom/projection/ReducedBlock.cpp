@@ -1,4 +1,4 @@
-#include "rom/queries/ReducedBlock.hpp"
+#include "rom/projection/ReducedBlock.hpp"
 
 #include <fmt/format.h>
 #include <Tpetra_Map.hpp>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "framework/observers/Observer.hpp"
+#include "framework/time/StepListener.hpp"
 #include "framework/time/TimeScheme.hpp"
 
 namespace kiln {
@@ -31,13 +31,13 @@ struct LoopTotals {
 };
 
 /// Runs a method through its time span. `scheme` is started or restored already and x is the unknown at first_step;
-/// observers see the first moment only when first_step is 0. Adds the step to a DivergenceError. While a SignalWatch
+/// listeners see the first moment only when first_step is 0. Adds the step to a DivergenceError. While a SignalWatch
 /// lives, throws Stopped (StopRequest.hpp) after the step in which SIGTERM or SIGINT came, or after the first if one
 /// came before, with a checkpoint of that step if `span` has any. Adds to `totals`, also of a run that is cut short.
 void run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
-                   const std::vector<Observer*>& observers, LoopTotals& totals);
+                   const std::vector<StepListener*>& listeners, LoopTotals& totals);
 /// The same, returning the totals.
 LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
-                         const std::vector<Observer*>& observers);
+                         const std::vector<StepListener*>& listeners);
 
 }  // namespace kiln

@@ -5,8 +5,8 @@
 
 #include "framework/queries/PointBlock.hpp"
 #include "rom/projection/PetrovGalerkin.hpp"
-#include "rom/queries/PointHistory.hpp"
-#include "rom/queries/PointProjection.hpp"
+#include "rom/projection/PointHistory.hpp"
+#include "rom/projection/PointProjection.hpp"
 
 namespace kiln {
 

@@ -1,4 +1,4 @@
-#include "framework/input/Units.hpp"
+#include "framework/base/Units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "framework/base/LinearAlgebra.hpp"
 #include "framework/model/Model.hpp"
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 
 namespace kiln {
 

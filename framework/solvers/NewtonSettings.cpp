@@ -1,10 +1,10 @@
-#include "framework/time/NewtonSettings.hpp"
+#include "framework/solvers/NewtonSettings.hpp"
 
 #include <array>
 #include <utility>
 
 #include "framework/base/Error.hpp"
-#include "framework/registry/Nearest.hpp"
+#include "framework/base/Nearest.hpp"
 #include "framework/solvers/LinearSolver.hpp"
 
 namespace kiln {

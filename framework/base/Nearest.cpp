@@ -1,4 +1,4 @@
-#include "framework/registry/Nearest.hpp"
+#include "framework/base/Nearest.hpp"
 
 #include <algorithm>
 #include <cctype>

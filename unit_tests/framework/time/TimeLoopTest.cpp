@@ -1,4 +1,4 @@
-#include "framework/driver/TimeLoop.hpp"
+#include "framework/time/TimeLoop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/StopRequest.hpp"
+#include "framework/base/StopRequest.hpp"
 #include "unit_tests/framework/method/FullOrderCases.hpp"
 
 namespace kiln {
@@ -40,16 +40,14 @@ TEST(TimeSpan, RefusesAnEndBetweenSteps) {
   EXPECT_THROW(TimeSpan::of(time_block(1e-12, 1.0)), InputError);
 }
 
-class Recorder : public Observer {
+class Recorder : public StepListener {
  public:
-  void begin() override {}
   void observe(const Moment& moment) override {
     steps.push_back(moment.step);
     times.push_back(moment.time);
     EXPECT_EQ(moment.last_step, 4);
     EXPECT_EQ(moment.solve.residuals == 0, moment.step == 0);
   }
-  void finish(RunReport&) override {}
   std::vector<int> steps;
   std::vector<double> times;
 };
@@ -59,7 +57,7 @@ std::unique_ptr<FullOrder> chain(int iterations) {
                                      newton(JacobianForm::diagonal, 1e-9, iterations));
 }
 
-TEST(TimeLoop, ObserversSeeEveryMoment) {
+TEST(TimeLoop, ListenersSeeEveryMoment) {
   const auto method = chain(100);
   const auto time_scheme = scheme("backward euler", *method, 0.1);
   const VectorView x = initial(*method);
@@ -78,13 +76,11 @@ TEST(TimeLoop, ObserversSeeEveryMoment) {
 }
 
 TEST(TimeLoop, CheckpointsAreDueAsAsked) {
-  class Marks : public Observer {
+  class Marks : public StepListener {
    public:
-    void begin() override {}
     void observe(const Moment& moment) override {
       if (moment.checkpoint) steps.push_back(moment.step);
     }
-    void finish(RunReport&) override {}
     std::vector<int> steps;
   };
   const auto method = chain(100);
@@ -106,10 +102,9 @@ TEST(TimeLoop, CheckpointsAreDueAsAsked) {
 
 /// A run that hears of SIGTERM on one of its ranks ends on all of them after the same step, with a checkpoint.
 TEST(TimeLoop, ASignalEndsItBetweenSteps) {
-  class Raises : public Observer {
+  class Raises : public StepListener {
    public:
     explicit Raises(int step) : step_(step) {}
-    void begin() override {}
     void observe(const Moment& moment) override {
       last = moment.step;
       checkpoint = moment.checkpoint;
@@ -118,7 +113,6 @@ TEST(TimeLoop, ASignalEndsItBetweenSteps) {
       // Ranks agree four times a second, or each step if that takes longer.
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    void finish(RunReport&) override {}
     int last = 0;
     bool checkpoint = false;
 

@@ -1,4 +1,4 @@
-#include "rom/queries/PointHistory.hpp"
+#include "rom/projection/PointHistory.hpp"
 
 #include <algorithm>
 

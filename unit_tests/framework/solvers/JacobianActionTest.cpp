@@ -1,4 +1,4 @@
-#include "framework/time/JacobianAction.hpp"
+#include "framework/solvers/JacobianAction.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/driver/StopRequest.hpp"
+#include "framework/base/StopRequest.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <csignal>

@@ -6,9 +6,9 @@
 #include "framework/base/Error.hpp"
 #include "framework/model/PointRates.hpp"
 #include "framework/queries/PointBlock.hpp"
+#include "rom/projection/PointProducts.hpp"
+#include "rom/projection/PointStates.hpp"
 #include "rom/projection/Projection.hpp"
-#include "rom/queries/PointProducts.hpp"
-#include "rom/queries/PointStates.hpp"
 
 namespace kiln {
 

@@ -1,4 +1,4 @@
-#include "rom/queries/PointProjection.hpp"
+#include "rom/projection/PointProjection.hpp"
 
 #include <Tpetra_Map.hpp>
 #include <algorithm>

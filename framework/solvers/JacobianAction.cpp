@@ -1,4 +1,4 @@
-#include "framework/time/JacobianAction.hpp"
+#include "framework/solvers/JacobianAction.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
@@ -13,12 +13,12 @@ namespace kiln {
 namespace {
 
 // Made once: Kokkos takes a std::string, and one made for each call would allocate in the online loop.
-const std::string scale_rows_label = "kiln::time::scale_rows";
+const std::string scale_rows_label = "kiln::solvers::scale_rows";
 
 double largest_entry(const ConstVectorView& values) {
   double largest = 0.0;
   Kokkos::parallel_reduce(
-      "kiln::time::largest_entry", RangePolicy(0, static_cast<LocalIndex>(values.extent(0))),
+      "kiln::solvers::largest_entry", RangePolicy(0, static_cast<LocalIndex>(values.extent(0))),
       KOKKOS_LAMBDA(const LocalIndex i, double& most) {
         const double size = values(i) < 0.0 ? -values(i) : values(i);
         if (size > most) most = size;
@@ -42,13 +42,13 @@ void scale_rows(const ConstVectorView& diagonal, const ConstMatrixView& v, const
 
 void shift(const ConstVectorView& u, double step, const ConstVectorView& direction, const VectorView& shifted) {
   Kokkos::parallel_for(
-      "kiln::time::shift", RangePolicy(0, static_cast<LocalIndex>(u.extent(0))),
+      "kiln::solvers::shift", RangePolicy(0, static_cast<LocalIndex>(u.extent(0))),
       KOKKOS_LAMBDA(const LocalIndex i) { shifted(i) = u(i) + step * direction(i); });
 }
 
 void difference_quotient(const ConstVectorView& rate, double step, const VectorView& shifted_rate) {
   Kokkos::parallel_for(
-      "kiln::time::difference_quotient", RangePolicy(0, static_cast<LocalIndex>(rate.extent(0))),
+      "kiln::solvers::difference_quotient", RangePolicy(0, static_cast<LocalIndex>(rate.extent(0))),
       KOKKOS_LAMBDA(const LocalIndex i) { shifted_rate(i) = (shifted_rate(i) - rate(i)) / step; });
 }
 
@@ -59,13 +59,13 @@ JacobianAction::JacobianAction(const Model& model, JacobianForm form) : model_(m
   const std::size_t rows = local_size(*model.rows()) * components;
   const std::size_t sources = local_size(*model.sources()) * components;
   if (form_ == JacobianForm::diagonal) {
-    diagonal_ = VectorView("kiln::time::rate Jacobian diagonal", rows);
+    diagonal_ = VectorView("kiln::solvers::rate Jacobian diagonal", rows);
     return;
   }
-  u_ = VectorView("kiln::time::frozen state", sources);
+  u_ = VectorView("kiln::solvers::frozen state", sources);
   if (form_ == JacobianForm::finite_difference) {
-    rate_ = VectorView("kiln::time::frozen rate", rows);
-    shifted_ = VectorView("kiln::time::shifted state", sources);
+    rate_ = VectorView("kiln::solvers::frozen rate", rows);
+    shifted_ = VectorView("kiln::solvers::shifted state", sources);
   }
 }
 
@@ -73,11 +73,11 @@ void JacobianAction::require_offered(ConstVectorView u) const {
   const std::size_t rows = local_size(*model_.rows()) * model_.fields().size();
   switch (form_) {
     case JacobianForm::diagonal:
-      return model_.rate_jacobian_diagonal(u, 0.0, VectorView("kiln::time::no diagonal", rows));
+      return model_.rate_jacobian_diagonal(u, 0.0, VectorView("kiln::solvers::no diagonal", rows));
     case JacobianForm::sparse:
     case JacobianForm::matrix_free:
-      return model_.apply_rate_jacobian(u, 0.0, MatrixView("kiln::time::no direction", u.extent(0), 1),
-                                        MatrixView("kiln::time::no change", rows, 1));
+      return model_.apply_rate_jacobian(u, 0.0, MatrixView("kiln::solvers::no direction", u.extent(0), 1),
+                                        MatrixView("kiln::solvers::no change", rows, 1));
     case JacobianForm::finite_difference:
       return;
   }

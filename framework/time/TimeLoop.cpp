@@ -1,4 +1,4 @@
-#include "framework/driver/TimeLoop.hpp"
+#include "framework/time/TimeLoop.hpp"
 
 #include <fmt/format.h>
 
@@ -10,13 +10,13 @@
 #include <limits>
 
 #include "framework/base/Error.hpp"
-#include "framework/driver/StopRequest.hpp"
+#include "framework/base/StopRequest.hpp"
 
 namespace kiln {
 namespace {
 
-void show(const Moment& moment, const std::vector<Observer*>& observers) {
-  for (Observer* observer : observers) observer->observe(moment);
+void show(const Moment& moment, const std::vector<StepListener*>& listeners) {
+  for (StepListener* listener : listeners) listener->observe(moment);
 }
 
 /// Adds up what lies between its calls. A reduced step takes no longer than some calls of Teuchos::TimeMonitor.
@@ -81,13 +81,13 @@ TimeSpan TimeSpan::of(const Teuchos::ParameterList& input) {
 }
 
 void run_time_loop(Method& method, TimeScheme& scheme, VectorView unknown, const TimeSpan& span,
-                   const std::vector<Observer*>& observers, LoopTotals& totals) {
+                   const std::vector<StepListener*>& listeners, LoopTotals& totals) {
   const VectorView x = uncounted(unknown);
   const Communicator& communicator = *method.particles()->getComm();
   Checkpoints checkpoints(span, communicator);
   StopRequest stop(communicator, span.first_step);
   Lap lap;
-  if (span.first_step == 0) show({0, span.last_step, 0.0, x, {}}, observers);
+  if (span.first_step == 0) show({0, span.last_step, 0.0, x, {}}, listeners);
   lap.add_to(totals.observing_s);
   for (int step = span.first_step + 1; step <= span.last_step; ++step) {
     const double time = step * span.step;
@@ -105,7 +105,7 @@ void run_time_loop(Method& method, TimeScheme& scheme, VectorView unknown, const
     totals.capped_steps += solve.converged ? 0 : 1;
     const bool stopped = stop.came(step) && step < span.last_step;
     const bool checkpoint = checkpoints.due(step) || (stopped && span.checkpoint_every > 0);
-    show({step, span.last_step, time, x, solve, checkpoint}, observers);
+    show({step, span.last_step, time, x, solve, checkpoint}, listeners);
     lap.add_to(totals.observing_s);
     if (stopped) {
       throw Stopped(fmt::format("{} came: stopped after step {} of {}, t = {:.6g} s", StopRequest::name(), step,
@@ -115,9 +115,9 @@ void run_time_loop(Method& method, TimeScheme& scheme, VectorView unknown, const
 }
 
 LoopTotals run_time_loop(Method& method, TimeScheme& scheme, VectorView x, const TimeSpan& span,
-                         const std::vector<Observer*>& observers) {
+                         const std::vector<StepListener*>& listeners) {
   LoopTotals totals;
-  run_time_loop(method, scheme, x, span, observers, totals);
+  run_time_loop(method, scheme, x, span, listeners, totals);
   return totals;
 }
 

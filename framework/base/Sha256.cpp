@@ -1,4 +1,4 @@
-#include "framework/report/Sha256.hpp"
+#include "framework/base/Sha256.hpp"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
