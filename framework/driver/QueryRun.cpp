@@ -49,10 +49,7 @@ class Recorder final : public StepListener {
   using Keep = std::function<void(int step, ConstVectorView x)>;
   Recorder(PointOutcome& outcome, Keep keep) : outcome_(outcome), keep_(std::move(keep)) {}
   void observe(const Moment& moment) override {
-    outcome_.steps = moment.step;
-    outcome_.residuals += moment.solve.residuals;
-    outcome_.iterations += moment.solve.iterations;
-    outcome_.capped_steps += moment.solve.converged ? 0 : 1;
+    if (moment.step > 0) outcome_.add(moment.solve);
     keep_(moment.step, moment.x);
   }
 
@@ -201,14 +198,10 @@ std::size_t QueryRun::diverged() const {
 
 void QueryRun::report(RunReport& report) const {
   nlohmann::json marked = nlohmann::json::array();
-  long long mine[4] = {}, all[4] = {};
   for (std::size_t i = 0; i < answers_.outcomes.size(); ++i) {
     const PointOutcome& outcome = answers_.outcomes[i];
     if (!outcome.divergence.empty()) marked.push_back({{"point", answers_.first + i}, {"what", outcome.divergence}});
-    const long long counted[] = {outcome.steps, outcome.residuals, outcome.iterations, outcome.capped_steps};
-    for (int k = 0; k < 4; ++k) mine[k] += counted[k];
   }
-  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 4, mine, all);
   nlohmann::json divergences = nlohmann::json::array();
   for (const std::string& text : gathered(json_text(marked), *communicator_)) {
     for (const nlohmann::json& one : nlohmann::json::parse(text)) divergences.push_back(one);
@@ -217,13 +210,35 @@ void QueryRun::report(RunReport& report) const {
                                {"together", together_},
                                {"diverged", divergences.size()},
                                {"divergences", divergences}};
-  const double steps = std::max(1.0, static_cast<double>(all[0]));
-  report.section("solve") = {{"steps", all[0]},
-                             {"residuals", all[1]},
-                             {"residuals_per_step", static_cast<double>(all[1]) / steps},
-                             {"iterations", all[2]},
-                             {"iterations_per_step", static_cast<double>(all[2]) / steps},
-                             {"capped_steps", all[3]}};
+  report.section("solve") = totals().facts();
+  method_->report(report.section("method"));
+}
+
+SolveTotals QueryRun::totals() const {
+  SolveTotals mine, all;
+  for (const PointOutcome& outcome : answers_.outcomes) mine += outcome;
+  const long long counted[] = {mine.steps, mine.residuals, mine.iterations, mine.capped_steps};
+  long long sums[4] = {};
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 4, counted, sums);
+  all.steps = sums[0];
+  all.residuals = sums[1];
+  all.iterations = sums[2];
+  all.capped_steps = sums[3];
+  return all;
+}
+
+std::vector<std::string> QueryRun::warnings() {
+  std::vector<std::string> warnings = totals().warnings();
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t point = 0; point < answers_.points.count(); ++point) {
+    answers_.points.set(point, method_->parameters());
+    for (const std::string& warning : method_->warnings()) {
+      if (count++ == 0) first = fmt::format("point {}: {}", point, warning);
+    }
+  }
+  if (count > 0) warnings.push_back(count == 1 ? first : fmt::format("{}; and {} more points", first, count - 1));
+  return warnings;
 }
 
 }  // namespace kiln

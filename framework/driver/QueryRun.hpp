@@ -26,6 +26,8 @@ class QueryRun {
   const QueryAnswers& answer();
   /// Adds points, divergences and sums over all points. Collective.
   void report(RunReport& report) const;
+  /// What is to be known before the answers are believed, a sentence each. Collective.
+  std::vector<std::string> warnings();
   /// How many of all points diverged. Collective.
   std::size_t diverged() const;
 
@@ -33,6 +35,8 @@ class QueryRun {
   void make_block(std::size_t points);
   void answer_together(std::size_t first, std::size_t count);
   void answer_alone(std::size_t point);
+  /// Over all points. Collective.
+  SolveTotals totals() const;
   bool is_recorded(int step) const { return step % every_ == 0 || step == span_.last_step; }
 
   const Teuchos::ParameterList& input_;

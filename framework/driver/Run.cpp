@@ -160,14 +160,12 @@ auto located(const Input& input, Build&& build) {
   }
 }
 
-void report_solve(RunReport& report, const LoopTotals& totals) {
-  const double steps = std::max(totals.steps, 1);
-  report.section("solve") = {{"steps", totals.steps},
-                             {"residuals", totals.residuals},
-                             {"residuals_per_step", static_cast<double>(totals.residuals) / steps},
-                             {"iterations", totals.iterations},
-                             {"iterations_per_step", static_cast<double>(totals.iterations) / steps},
-                             {"capped_steps", totals.capped_steps}};
+/// Tells what is to be known before the answers are believed, on the standard error output and in the report.
+void warn(const std::vector<std::string>& warnings, RunReport& report, const Communicator& communicator) {
+  for (const std::string& warning : warnings) {
+    report.section("run")["warnings"].push_back(warning);
+    if (communicator.getRank() == 0) fmt::print(stderr, "warning: {}\n", warning);
+  }
 }
 
 void write_report(const RunReport& report, const std::filesystem::path& folder, const Comm& communicator, bool quiet) {
@@ -261,6 +259,7 @@ void answer_timed(const Stopwatch& total, const Input& input, const CommandOptio
       {"step_s", list.sublist("time").get<double>("step")}};
   report_origins(hashes, report, *communicator);
   queries->report(report);
+  warn(queries->warnings(), report, *communicator);
   const Seconds all = elapsed(total, *communicator);
   report.section("time") = {{"setup_wall_s", setup.wall},
                             {"setup_cpu_s", setup.cpu},
@@ -303,6 +302,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
            {"first_step", assembly->span().first_step},
            {"step_s", assembly->span().step}};
   report_origins(hashes, report, *communicator);
+  warn(assembly->method().warnings(), report, *communicator);
 
   std::exception_ptr failure;
   const Stopwatch loop;
@@ -321,7 +321,8 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
     failure = std::make_exception_ptr(Stopped(message));
   }
   const Seconds stepping = elapsed(loop, *communicator);
-  report_solve(report, totals);
+  report.section("solve") = totals.facts();
+  warn(totals.warnings(), report, *communicator);
   try {
     assembly->finish(report);
   } catch (const std::exception& error) {

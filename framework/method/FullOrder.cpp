@@ -227,6 +227,10 @@ bool FullOrder::searched_update(const StepResidual& residual, VectorView x, Vect
   return norm < start;
 }
 
+NearestParticle FullOrder::nearest(const std::array<double, 3>& point) const {
+  return nearest_particle(*particles(), positions(), point);
+}
+
 ConstPositionView FullOrder::positions() const {
   return Kokkos::subview(model_->positions(), std::make_pair(LocalIndex(0), local_size(*model_->rows())), Kokkos::ALL);
 }

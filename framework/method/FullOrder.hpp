@@ -45,6 +45,7 @@ class FullOrder : public Method {
 
   Teuchos::RCP<const Map> particles() const override { return model_->rows(); }
   ConstPositionView positions() const override;
+  NearestParticle nearest(const std::array<double, 3>& point) const override;
   std::vector<Field> fields() const override { return model_->fields(); }
   void state(ConstVectorView x, VectorView u) const override;
   Reader reader(const std::vector<LocalIndex>& places) const override;
@@ -52,6 +53,7 @@ class FullOrder : public Method {
 
   void save(hdf5::Group& group) const override;
   void restore(const hdf5::Group& group) override;
+  std::vector<std::string> warnings() const override { return {}; }
   void report(nlohmann::json& section) const override;
 
   const std::shared_ptr<Model>& model() const { return model_; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
+#include "framework/base/NearestParticle.hpp"
 #include "framework/method/StepResidual.hpp"
 #include "framework/model/Model.hpp"
 
@@ -70,6 +72,9 @@ class Method {
   virtual Teuchos::RCP<const Map> particles() const = 0;
   /// Positions in metres of particles(), in its order.
   virtual ConstPositionView positions() const = 0;
+  /// The particle that a question about a point (m) is about: the nearest one of the whole model. Its id is −1 where it
+  /// is not among particles(), or not known to be. Collective.
+  virtual NearestParticle nearest(const std::array<double, 3>& point) const = 0;
   /// Components of a particle's state.
   virtual std::vector<Field> fields() const = 0;
   /// State of particles() for the unknown x. u: particles × components.
@@ -85,6 +90,9 @@ class Method {
   virtual void save(hdf5::Group& group) const = 0;
   virtual void restore(const hdf5::Group& group) = 0;
 
+  /// What a user is to know before the answers to the parameters of now are believed, a sentence each. The same on
+  /// every rank.
+  virtual std::vector<std::string> warnings() const = 0;
   /// The method's own lines of the run report, e.g. basis rank and sampled particles.
   virtual void report(nlohmann::json& section) const = 0;
 };

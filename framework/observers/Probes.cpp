@@ -20,9 +20,20 @@ std::vector<Probe> find_probes(const Teuchos::ParameterList& list, const Method&
     const Teuchos::ParameterList& entry = points.sublist(std::to_string(i));
     const auto& position = entry.get<Teuchos::Array<double>>("position");
     Probe probe{entry.get<std::string>("name"), {position[0], position[1], position[2]}, {}};
-    probe.particle = nearest_particle(*map, positions, probe.point);
+    probe.particle = method.nearest(probe.point);
+    if (probe.particle.id < 0) {
+      problems.push_back(
+          {fmt::format("{}.points.{}.position", list.name(), i),
+           fmt::format("probe '{}' at ({:.6g}, {:.6g}, {:.6g}) m: this method does not hold the particle "
+                       "nearest to it",
+                       probe.name, probe.point[0], probe.point[1], probe.point[2]),
+           "a position among the probes and reduction.queries of the training, or on a particle that is "
+           "held; or add it to reduction.queries and train again",
+           ""});
+      continue;
+    }
     const double tolerance = list.isParameter("tolerance") ? list.get<double>("tolerance") : probe.particle.spacing;
-    if (probe.particle.id < 0 || !(probe.particle.distance <= tolerance)) {
+    if (!(probe.particle.distance <= tolerance)) {
       problems.push_back(
           {fmt::format("{}.points.{}.position", list.name(), i),
            fmt::format("probe '{}' at ({:.6g}, {:.6g}, {:.6g}) m is outside: the nearest particle is {:.4g} m away",

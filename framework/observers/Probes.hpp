@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/NearestParticle.hpp"
 #include "framework/method/Method.hpp"
-#include "framework/observers/NearestParticle.hpp"
 
 namespace kiln {
 

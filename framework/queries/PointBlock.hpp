@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
+#include "framework/method/SolveTotals.hpp"
 #include "framework/model/ParameterPoints.hpp"
 
 namespace kiln {
@@ -12,11 +13,7 @@ namespace kiln {
 class TimeScheme;
 
 /// How the run of one point went.
-struct PointOutcome {
-  int steps = 0;  ///< completed
-  long long residuals = 0;
-  long long iterations = 0;
-  int capped_steps = 0;
+struct PointOutcome : SolveTotals {
   std::string divergence;  ///< what DivergenceError says; empty: it did not diverge
 };
 

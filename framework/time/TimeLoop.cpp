@@ -99,10 +99,7 @@ void run_time_loop(Method& method, TimeScheme& scheme, VectorView unknown, const
       throw error.at_step(step);
     }
     lap.add_to(totals.stepping_s);
-    ++totals.steps;
-    totals.residuals += solve.residuals;
-    totals.iterations += solve.iterations;
-    totals.capped_steps += solve.converged ? 0 : 1;
+    totals.add(solve);
     const bool stopped = stop.came(step) && step < span.last_step;
     const bool checkpoint = checkpoints.due(step) || (stopped && span.checkpoint_every > 0);
     show({step, span.last_step, time, x, solve, checkpoint}, listeners);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "framework/method/SolveTotals.hpp"
 #include "framework/time/StepListener.hpp"
 #include "framework/time/TimeScheme.hpp"
 
@@ -21,11 +22,7 @@ struct TimeSpan {
 };
 
 /// Sums of a run's solve reports, and where its time went.
-struct LoopTotals {
-  int steps = 0;
-  long long residuals = 0;
-  long long iterations = 0;
-  int capped_steps = 0;      ///< steps whose iteration cap came before convergence
+struct LoopTotals : SolveTotals {
   double stepping_s = 0.0;   ///< wall time of this rank
   double observing_s = 0.0;  ///< likewise
 };

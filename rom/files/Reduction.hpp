@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "framework/model/Model.hpp"
+#include "framework/model/ParameterPoints.hpp"
 #include "rom/files/ClusteredMesh.hpp"
+#include "rom/files/Questions.hpp"
 #include "rom/pod/Pod.hpp"
 #include "rom/sampling/GappyOperator.hpp"
 
@@ -30,9 +32,10 @@ struct Reduction {
   const Model& model;
   VectorView reference;  ///< u_ref at the rows
   std::vector<WindowReduction> windows;
-  std::vector<GlobalIndex> queries;  ///< ids, ascending
+  Questions questions;  ///< without their spacing, which follows from the sample meshes
   /// Ids, ascending: where a component was highest or lowest at any step of the training.
   std::vector<GlobalIndex> extremes;
+  ParameterPoints points;  ///< all live parameters, where it was learnt and is to be tried
 };
 
 /// Writes a reduction file. It holds everything an online run needs:
@@ -42,6 +45,7 @@ struct Reduction {
 ///                     trial_clustered (JSON), those of the clustered mesh's, where there is one
 ///     /data_files     hashes of the data files that model_input names, one attribute (JSON) each
 ///     /parameters     live parameters of the model at training, one attribute each
+///     /points         their values where it was learnt and tried, one dataset each
 ///     /time           step in s and scheme (as YAML) of the training
 ///     /reference      u_ref (N)
 ///     /windows/0 …    one group a time window; attribute end (s)
@@ -49,7 +53,8 @@ struct Reduction {
 ///       sample_mesh/    rows, sources (ids); gappy_operator (n_r × n_p), residual_singular_values; attributes
 ///                       sigma_min, condition, residual_rank, residual_energy; model/, written by the model itself
 ///     /particles      the sources of all windows and the queried particles: ids, positions, reference, modes (of all
-///                     windows, one after the other), and the ids of the queries; the particles of the extremes, too
+///                     windows, one after the other), and the questions (Questions.hpp); the particles of the
+///                     extremes, too
 ///     /targets        with source clustering: the same of the sampled particles in place of their sources
 ///
 /// Row i of reference and basis/ belongs to particle i. Online, a hyper-reduced run reads nothing of size N. Throws

@@ -10,6 +10,7 @@
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Folders.hpp"
+#include "framework/files/Json.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/time/TimeLoop.hpp"
 #include "rom/files/ReductionIdentity.hpp"
@@ -212,9 +213,16 @@ ParticleTable ReductionFile::target_particles() const {
   return ParticleTable::read(group, ids(group, "ids"), components_, coordinates());
 }
 
-std::vector<GlobalIndex> ReductionFile::queries() const {
-  const hdf5::Array<long long> ids = file_.group("particles").integers("queries", {0});
-  return {ids.values.begin(), ids.values.end()};
+Questions ReductionFile::questions() const { return Questions::read(file_.group("particles")); }
+
+std::vector<TrainedRange> ReductionFile::trained_ranges() const { return read_trained_ranges(file_); }
+
+nlohmann::json ReductionFile::trial(bool clustered) const {
+  const std::string name = clustered ? "trial_clustered" : "trial";
+  if (!file_.has_attribute(name)) return {};
+  nlohmann::json trial = parse_json(file_.text(name));
+  if (trial.is_object()) return trial;
+  throw FileError(file_.file(), "attribute " + name, "is no JSON object", "the errors of a trial run");
 }
 
 }  // namespace kiln

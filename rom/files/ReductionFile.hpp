@@ -3,11 +3,14 @@
 #include <Teuchos_ParameterList.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "framework/files/Hdf5.hpp"
 #include "rom/basis/TimeWindow.hpp"
 #include "rom/files/ParticleRows.hpp"
+#include "rom/files/Questions.hpp"
+#include "rom/files/TrainedRange.hpp"
 
 namespace kiln {
 
@@ -65,7 +68,11 @@ class ReductionFile {
   ParticleTable held_particles() const;
   /// The sampled particles of all windows in place of their sources. Throws FileError where nothing is clustered.
   ParticleTable target_particles() const;
-  std::vector<GlobalIndex> queries() const;
+  Questions questions() const;
+  std::vector<TrainedRange> trained_ranges() const;
+  /// The errors of the training's trial runs (Reduction.hpp), of GNAT or on clustered sources; null while there are
+  /// none.
+  nlohmann::json trial(bool clustered) const;
 
  private:
   hdf5::Group window(std::size_t number) const;

@@ -1,6 +1,8 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "rom/files/ParticleRows.hpp"
 #include "rom/files/Reduction.hpp"
 #include "rom/files/ReductionIdentity.hpp"
+#include "rom/files/TrainedRange.hpp"
 
 namespace kiln {
 namespace {
@@ -61,6 +64,22 @@ void write_sample_mesh(hdf5::Group group, const WindowReduction& window, const s
   window.sample->save_sample(model);
 }
 
+/// The least distance of a sampled particle to a source of its window, itself apart, in m; 0 where all stand alone.
+double spacing_of(const std::vector<WindowReduction>& windows, const ParticleTable& held) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const WindowReduction& window : windows) {
+    const std::vector<GlobalIndex> sources = all_ids(*window.sample->sources());
+    for (const GlobalIndex row : window.sampled) {
+      const double* from = held.positions.data() + 3 * held.find(row);
+      for (const GlobalIndex source : sources) {
+        const double* to = held.positions.data() + 3 * held.find(source);
+        if (source != row) least = std::min(least, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+      }
+    }
+  }
+  return std::isfinite(least) ? least : 0.0;
+}
+
 void write_contents(const std::string& file, const Reduction& reduction) {
   const Map& rows = *reduction.model.rows();
   const Teuchos::RCP<const Communicator> communicator = rows.getComm();
@@ -75,7 +94,7 @@ void write_contents(const std::string& file, const Reduction& reduction) {
   root.attribute_of("reference", "unit", reduction.model.fields().front().unit);
 
   hdf5::Group windows = root.create_group("windows");
-  std::vector<GlobalIndex> told = reduction.queries;
+  std::vector<GlobalIndex> told = reduction.questions.nearest;
   told.insert(told.end(), reduction.extremes.begin(), reduction.extremes.end());
   std::set<GlobalIndex> held(told.begin(), told.end()), targets = held;
   bool clustered = false;
@@ -98,12 +117,16 @@ void write_contents(const std::string& file, const Reduction& reduction) {
                                  modes, components);
   };
   hdf5::Group particles = root.create_group("particles");
-  table_of(held).write(particles);
+  const ParticleTable table = table_of(held);
+  table.write(particles);
   if (clustered) {
     hdf5::Group group = root.create_group("targets");
     table_of(targets).write(group);
   }
-  particles.write("queries", std::vector<long long>(reduction.queries.begin(), reduction.queries.end()));
+  Questions questions = reduction.questions;
+  questions.spacing = spacing_of(reduction.windows, table);
+  questions.write(particles);
+  write_points(root, reduction.points);
   root.flush();
 }
 

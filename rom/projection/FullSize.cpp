@@ -58,6 +58,7 @@ PetrovGalerkin::Parts full_size_parts(const Method::Context& context,
   const BasisRows rows = reduction.basis(*model->sources());
   PetrovGalerkin::Parts parts = full_size_parts(model, reduction.windows(), rows.reference, rows.modes, test_basis);
   parts.reduction = reduction.fingerprint();
+  parts.trained = reduction.trained_ranges();
   return parts;
 }
 

@@ -93,6 +93,8 @@ HyperReduced::Made HyperReduced::made_of(const Opened& opened, const Meshes& mes
   made.parts.particles = dealt(opened.held, opened.context.communicator);
   made.parts.positions = positions_at(*made.parts.particles, opened.held);
   made.parts.reduction = reduction.fingerprint();
+  made.parts.trained = reduction.trained_ranges();
+  made.parts.questions = reduction.questions();
   const BasisRows held = rows_at(*made.parts.particles, {&opened.held}, reduction.coordinates(), opened.name());
   std::shared_ptr<const TrialSpace> held_before;
   // The hardest window speaks for all.
@@ -118,11 +120,12 @@ HyperReduced::Made HyperReduced::made_of(const Opened& opened, const Meshes& mes
   made.facts["sampled"] = sampled;
   made.facts["sources"] = sources;
   made.facts["held"] = opened.held.ids.size();
-  made.facts["queried"] = reduction.queries().size();
+  made.facts["queried"] = made.parts.questions->particles().size();
   made.facts["full_order_particles"] = reduction.particles();
   made.facts["sigma_min"] = sigma_min;
   made.facts["gappy_condition"] = condition;
   made.facts["reduction_file"] = opened.name();
+  if (nlohmann::json trial = reduction.trial(false); !trial.is_null()) made.facts["trial"] = std::move(trial);
   return made;
 }
 

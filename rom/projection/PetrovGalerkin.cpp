@@ -21,7 +21,9 @@ PetrovGalerkin::PetrovGalerkin(Parts parts, const NewtonSettings& settings, Proj
     : particles_(std::move(parts.particles)),
       positions_(parts.positions),
       settings_(settings),
-      reduction_(std::move(parts.reduction)) {
+      reduction_(std::move(parts.reduction)),
+      trained_(std::move(parts.trained)),
+      questions_(std::move(parts.questions)) {
   for (Window& window : parts.windows) {
     windows_.push_back({window.end, std::make_unique<Projection>(std::move(window.projection), settings, factors),
                         std::move(window.held)});
@@ -60,6 +62,16 @@ void PetrovGalerkin::evaluate(ConstVectorView x, double time, VectorView u, Vect
 
 SolveReport PetrovGalerkin::solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) {
   return projection().solve(residual, x, u, f);
+}
+
+NearestParticle PetrovGalerkin::nearest(const std::array<double, 3>& point) const {
+  const NearestParticle found = nearest_particle(*particles_, positions_, point);
+  return !questions_ || questions_->tells(point, found.distance) ? found : NearestParticle{};
+}
+
+std::vector<std::string> PetrovGalerkin::warnings() const {
+  const std::string outside = outside_of(trained_, parameters_);
+  return outside.empty() ? std::vector<std::string>{} : std::vector<std::string>{outside};
 }
 
 Method::Reader PetrovGalerkin::reader(const std::vector<LocalIndex>& places) const {

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/method/Method.hpp"
 #include "framework/queries/PointBlock.hpp"
+#include "rom/files/Questions.hpp"
+#include "rom/files/TrainedRange.hpp"
 #include "rom/projection/Projection.hpp"
 
 namespace kiln {
@@ -30,6 +33,10 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
     ConstPositionView positions;
     /// Tells the reduction from one learnt anew (hdf5::File::fingerprint); empty: it comes from no file.
     std::string reduction;
+    /// Of the live parameters; empty: it comes from no file.
+    std::vector<TrainedRange> trained;
+    /// Where `particles` are not all of the model's.
+    std::optional<Questions> questions;
   };
 
   PetrovGalerkin(Parts parts, const NewtonSettings& settings, Projection::Factors factors = Projection::Factors::kept);
@@ -49,6 +56,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
 
   Teuchos::RCP<const Map> particles() const override { return particles_; }
   ConstPositionView positions() const override { return positions_; }
+  NearestParticle nearest(const std::array<double, 3>& point) const override;
   std::vector<Field> fields() const override { return projection().model().fields(); }
   void state(ConstVectorView x, VectorView u) const override { windows_[current_].held->state(x, u); }
   Reader reader(const std::vector<LocalIndex>& places) const override;
@@ -58,6 +66,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   void save(hdf5::Group& group) const override;
   /// Throws FileError for the state of a run on another reduction too: its coordinates are not this one's.
   void restore(const hdf5::Group& group) override;
+  std::vector<std::string> warnings() const override;
   void report(nlohmann::json& section) const override;
 
   /// With linear multistep schemes.
@@ -88,6 +97,8 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   Teuchos::RCP<const Map> coordinates_;
   Parameters parameters_;
   std::string reduction_;
+  std::vector<TrainedRange> trained_;
+  std::optional<Questions> questions_;
 };
 
 }  // namespace kiln

@@ -50,6 +50,7 @@ class Ptrom : public HyperReduced {
       gnat_sources = std::max(gnat_sources, mesh.sources.size());
       return {model, rows_at(*model->sources(), {&opened.held, &clusters}, columns, opened.name()), sources};
     });
+    if (nlohmann::json trial = opened.file.trial(true); !trial.is_null()) made.facts["trial"] = std::move(trial);
     made.facts["pairs"] = pairs;
     made.facts["gnat_pairs"] = gnat_pairs;
     made.facts["pairs_ratio"] = static_cast<double>(pairs) / static_cast<double>(gnat_pairs);

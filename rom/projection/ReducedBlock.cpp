@@ -99,11 +99,7 @@ void ReducedBlock::advance(int step, double time) {
       outcome.divergence = states_[point].divergence->at_step(step).what();
       continue;
     }
-    const SolveReport& solve = states_[point].solve;
-    ++outcome.steps;
-    outcome.residuals += solve.residuals;
-    outcome.iterations += solve.iterations;
-    outcome.capped_steps += solve.converged ? 0 : 1;
+    outcome.add(states_[point].solve);
   }
 }
 

@@ -80,6 +80,7 @@ FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos:
 
 void FullOrderRuns::run() {
   model()->initial_state(reference_);
+  questions_ = questions_of(input_, *model());
   if (settings_.hold) snapshots_.limit(*settings_.hold, communicator_);
   snapshots_.reserve(learnt_ * ((settings_.span.last_step + settings_.every - 1) / settings_.every));
   for (std::size_t point = 0; point < points_.count(); ++point) run_at(point);
@@ -92,8 +93,7 @@ void FullOrderRuns::run_at(std::size_t point) {
   method_.forget();
   points_.set(point, method_.parameters());
 
-  TrialReference trial{
-      {}, nearest_particles(*model(), queried_positions(input_)), {}, {}, Snapshots(method_.row_size())};
+  TrialReference trial{{}, questions_.particles(), {}, {}, Snapshots(method_.row_size())};
   if (!varied_.empty()) trial.point = points_.part(point, 1);
   const int last = settings_.span.last_step;
   const int moments = std::min(last, trial_moments);

@@ -10,6 +10,7 @@
 #include "framework/method/FullOrder.hpp"
 #include "framework/registry/Specification.hpp"
 #include "framework/time/TimeLoop.hpp"
+#include "rom/files/Questions.hpp"
 #include "rom/pod/Snapshots.hpp"
 #include "rom/training/TrialRun.hpp"
 
@@ -46,6 +47,8 @@ class FullOrderRuns {
   /// Gives them the input's own values.
   void go_home() const { own_.set(0, model()->parameters()); }
 
+  /// What online runs must be able to tell.
+  const Questions& questions() const { return questions_; }
   /// u − u_0 of the points learnt from, one run after the other.
   Snapshots& snapshots() { return snapshots_; }
   /// What a trial at a point is measured against.
@@ -71,6 +74,7 @@ class FullOrderRuns {
   std::vector<std::string> varied_;  ///< names of the parameters that points list
   std::size_t learnt_ = 1;
   VectorView reference_;
+  Questions questions_;
   Snapshots snapshots_;
   std::vector<TrialReference> trials_;
   std::vector<GlobalIndex> extremes_;

@@ -86,9 +86,7 @@ LearntStates LearnWindows::march(std::vector<Marcher>& marchers, std::size_t win
         run_time_loop(lspg_, *marcher.scheme, marcher.x, {settings_.span.step, first_step, last_step}, listeners);
     states.coordinates.insert(states.coordinates.end(), record.unknowns().begin(), record.unknowns().end());
     states.at.resize(states.coordinates.size(), point);
-    totals_.steps += part.steps;
-    totals_.residuals += part.residuals;
-    totals_.capped_steps += part.capped_steps;
+    totals_ += part;
   }
   full_order_.go_home();
   return states;

@@ -231,8 +231,8 @@ ProcedureTwo::Trials ProcedureTwo::attempt(const std::string& path, double error
   });
   stage("reduction file", report, [&] {
     const VectorView rows = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg->row_size()));
-    write_reduction(path, {input_, *full_order_->model(), rows, std::move(windows), full_order_->trial(0).queries,
-                           full_order_->extremes()});
+    write_reduction(path, {input_, *full_order_->model(), rows, std::move(windows), full_order_->questions(),
+                           full_order_->extremes(), full_order_->parameters()});
   });
   Trials trials;
   stage("trial run", report, [&] {
@@ -287,14 +287,15 @@ void ProcedureTwo::run_full_order(RunReport& report) {
   full_order_ = full_order_runs();
   full_order_->run();
   LoopTotals totals;
-  for (const LoopTotals& run : full_order_->totals()) {
-    totals.steps += run.steps;
-    totals.residuals += run.residuals;
-  }
+  for (const LoopTotals& run : full_order_->totals()) totals += run;
+  for (const std::string& warning : totals.warnings()) warn("full order: " + warning, report);
   nlohmann::json& facts = report.section("training");
-  facts["full_order"] = {{"runs", full_order_->points()}, {"steps", totals.steps}, {"residuals", totals.residuals}};
+  facts["full_order"] = {{"runs", full_order_->points()},
+                         {"steps", totals.steps},
+                         {"residuals", totals.residuals},
+                         {"capped_steps", totals.capped_steps}};
   facts["state_snapshots"] = full_order_->snapshots().appended();
-  facts["queried"] = full_order_->trial(0).queries.size();
+  facts["queried"] = full_order_->questions().particles().size();
 }
 
 void ProcedureTwo::train(const std::filesystem::path& file, RunReport& report) {

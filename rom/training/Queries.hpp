@@ -1,19 +1,15 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
-#include <array>
-#include <vector>
 
 #include "framework/model/Model.hpp"
+#include "rom/files/Questions.hpp"
 
 namespace kiln {
 
-/// Positions whose state online runs must be able to tell: the probes of `output.probes.points` and the extra ones of
-/// `queries` in the block `reduction`; metres.
-std::vector<std::array<double, 3>> queried_positions(const Teuchos::ParameterList& input);
-
-/// Ids of the particles nearest to the positions, ascending and once each; the lowest id where several are as near. The
-/// same on every rank. Collective.
-std::vector<GlobalIndex> nearest_particles(const Model& model, const std::vector<std::array<double, 3>>& positions);
+/// Positions whose state online runs must be able to tell, each with the particle nearest to it (the lowest id where
+/// several are as near): the probes of `output.probes.points`, and `queries` in the block `reduction`. The same on
+/// every rank. Collective.
+Questions questions_of(const Teuchos::ParameterList& input, const Model& model);
 
 }  // namespace kiln

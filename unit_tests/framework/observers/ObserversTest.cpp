@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "framework/base/NearestParticle.hpp"
 #include "framework/files/CsvTable.hpp"
 #include "framework/observers/Extremes.hpp"
 #include "framework/observers/FieldObserver.hpp"
-#include "framework/observers/NearestParticle.hpp"
 #include "framework/observers/ProbeObserver.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"

@@ -51,6 +51,10 @@ class StandInMethod : public Method {
 
   Teuchos::RCP<const Map> particles() const override { return map_; }
   ConstPositionView positions() const override { return positions_; }
+  NearestParticle nearest(const std::array<double, 3>& point) const override {
+    return nearest_particle(*map_, positions_, point);
+  }
+  std::vector<std::string> warnings() const override { return {}; }
   std::vector<Field> fields() const override { return {{"temperature", "K"}, {"phase", "1"}}; }
   void state(ConstVectorView x, VectorView u) const override { Kokkos::deep_copy(u, x); }
   Reader reader(const std::vector<LocalIndex>& places) const override {

@@ -1,4 +1,4 @@
-#include "framework/observers/NearestParticle.hpp"
+#include "framework/base/NearestParticle.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>

@@ -9,7 +9,7 @@ namespace kiln {
 
 /// The particle nearest to a point, over all ranks; of equally near ones that of the lowest id. Lengths in m.
 struct NearestParticle {
-  GlobalIndex id = -1;  ///< −1: there are no particles
+  GlobalIndex id = -1;  ///< −1: there is none, or none that is known to be the nearest
   int rank = -1;        ///< where it lies
   LocalIndex local = -1;
   std::array<double, 3> position{};
