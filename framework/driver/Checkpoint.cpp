@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Tpetra_Map.hpp>
+#include <limits>
 #include <sstream>
 
 #include "framework/base/Error.hpp"
@@ -16,7 +17,7 @@
 namespace kiln {
 namespace {
 
-constexpr long long format = 4;
+constexpr long long format = 5;
 
 /// For HDF5's own account of what a checkpoint holds.
 constexpr std::uint64_t smallest_room = 65536;
@@ -40,16 +41,18 @@ std::string first_difference(const std::string& there, const std::string& here) 
 
 }  // namespace
 
-Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, std::string identity)
+Checkpoint::Checkpoint(const Context& context, TimeScheme& scheme, std::string identity, const SolveTotals& solved)
     : method_(context.method),
       scheme_(scheme),
       communicator_(context.communicator),
       folder_(context.folder),
       identity_(std::move(identity)),
+      solved_(solved),
       room_(smallest_room + identity_.size() +
             first_unknowns * sizeof(double) * method_.coordinates()->getGlobalNumElements()) {}
 
 void Checkpoint::observe(const Moment& moment) {
+  if (moment.step > 0) solved_.add(moment.solve);
   if (!moment.checkpoint) return;
   AtomicPath path(file(folder_), communicator_);
   {
@@ -58,6 +61,9 @@ void Checkpoint::observe(const Moment& moment) {
     checkpoint.attribute("identity", identity_);
     checkpoint.attribute("step", moment.step);
     checkpoint.attribute("time", moment.time);
+    checkpoint.attribute("residuals", solved_.residuals);
+    checkpoint.attribute("iterations", solved_.iterations);
+    checkpoint.attribute("capped_steps", solved_.capped_steps);
     save_unknown(checkpoint, "unknown", *method_.coordinates(), moment.x);
     hdf5::Group scheme = checkpoint.create_group("scheme");
     scheme_.save(scheme);
@@ -79,9 +85,9 @@ void Checkpoint::finish(RunReport& report) {
   report.section("observers")["checkpoint"] = {{"file", file(folder_).filename().string()}, {"written", written_}};
 }
 
-int Checkpoint::restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
-                        TimeScheme& scheme, VectorView x, int last_step,
-                        const Teuchos::RCP<const Communicator>& communicator) {
+Checkpoint::Resumed Checkpoint::restore(const std::filesystem::path& folder, const std::string& identity,
+                                        Method& method, TimeScheme& scheme, VectorView x, int last_step,
+                                        const Teuchos::RCP<const Communicator>& communicator) {
   const std::string path = file(folder).string();
   const hdf5::File checkpoint = hdf5::File::read(path, communicator);
   if (checkpoint.integer("format") != format) {
@@ -98,7 +104,11 @@ int Checkpoint::restore(const std::filesystem::path& folder, const std::string& 
   // The scheme evaluates states and rates at the rows, which the method must have found again by then.
   method.restore(checkpoint.group("method"));
   scheme.restore(checkpoint.group("scheme"));
-  return static_cast<int>(checkpoint.integer("step", 0, last_step));
+  const auto step = static_cast<int>(checkpoint.integer("step", 0, last_step));
+  constexpr long long any = std::numeric_limits<long long>::max();
+  return {step,
+          {step, checkpoint.integer("residuals", 0, any), checkpoint.integer("iterations", 0, any),
+           checkpoint.integer("capped_steps", 0, step)}};
 }
 
 }  // namespace kiln

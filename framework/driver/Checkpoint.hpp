@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "framework/method/SolveTotals.hpp"
 #include "framework/observers/Observer.hpp"
 #include "framework/time/TimeScheme.hpp"
 
@@ -14,8 +15,15 @@ namespace kiln {
 /// bit as if it had never stopped.
 class Checkpoint : public Observer {
  public:
-  /// `identity` is the text of what must agree between the runs: model, time and method.
-  Checkpoint(const Context& context, TimeScheme& scheme, std::string identity);
+  /// What a run that goes on begins with.
+  struct Resumed {
+    int step = 0;
+    SolveTotals solved;  ///< of the steps so far
+  };
+
+  /// `identity` is the text of what must agree between the runs: model, time and method. `solved`: before the first
+  /// step.
+  Checkpoint(const Context& context, TimeScheme& scheme, std::string identity, const SolveTotals& solved);
 
   void begin() override {}
   void observe(const Moment& moment) override;
@@ -23,12 +31,12 @@ class Checkpoint : public Observer {
 
   static std::filesystem::path file(const std::filesystem::path& folder) { return folder / "checkpoint.h5"; }
 
-  /// Takes x, the scheme's history and the method's solver state from the checkpoint in `folder`; returns its
-  /// step, which is at most `last_step`. Throws FileError for a missing or damaged file and for one of another run,
-  /// naming the first line of `identity` that differs.
-  static int restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
-                     TimeScheme& scheme, VectorView x, int last_step,
-                     const Teuchos::RCP<const Communicator>& communicator);
+  /// Takes x, the scheme's history and the method's solver state from the checkpoint in `folder`, whose step is at most
+  /// `last_step`. Throws FileError for a missing or damaged file and for one of another run, naming the first line of
+  /// `identity` that differs.
+  static Resumed restore(const std::filesystem::path& folder, const std::string& identity, Method& method,
+                         TimeScheme& scheme, VectorView x, int last_step,
+                         const Teuchos::RCP<const Communicator>& communicator);
 
  private:
   Method& method_;
@@ -36,6 +44,7 @@ class Checkpoint : public Observer {
   Teuchos::RCP<const Communicator> communicator_;
   std::filesystem::path folder_;
   std::string identity_;
+  SolveTotals solved_;
   std::uint64_t room_;  ///< bytes that the next one may take
   int written_ = 0;
 };

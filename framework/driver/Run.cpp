@@ -61,7 +61,10 @@ class Assembly {
     x_ = VectorView("kiln::run::unknown", local_size(*method_->coordinates()));
     const std::string identity = identity_of(list, data);
     if (restart) {
-      span_.first_step = Checkpoint::restore(folder, identity, *method_, *scheme_, x_, span_.last_step, communicator);
+      const auto [step, solved] =
+          Checkpoint::restore(folder, identity, *method_, *scheme_, x_, span_.last_step, communicator);
+      span_.first_step = step;
+      solved_before_ = solved;
     } else {
       method_->initial(x_);
       scheme_->start(x_, 0.0);
@@ -81,7 +84,7 @@ class Assembly {
       observers_.push_back(Registry<Observer>::create(output.sublist(key), context));
     }
     if (output.isSublist("checkpoint")) {
-      observers_.push_back(std::make_unique<Checkpoint>(context, *scheme_, identity));
+      observers_.push_back(std::make_unique<Checkpoint>(context, *scheme_, identity, solved_before_));
     }
   }
 
@@ -104,10 +107,13 @@ class Assembly {
   }
 
   const TimeSpan& span() const { return span_; }
+  /// Of the steps that an earlier part of the run took.
+  const SolveTotals& solved_before() const { return solved_before_; }
   Method& method() { return *method_; }
 
  private:
   TimeSpan span_;
+  SolveTotals solved_before_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<TimeScheme> scheme_;
   VectorView x_;
@@ -307,6 +313,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   std::exception_ptr failure;
   const Stopwatch loop;
   LoopTotals totals;
+  totals += assembly->solved_before();
   try {
     assembly->march(totals);
   } catch (const DivergenceError& error) {

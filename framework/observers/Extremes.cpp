@@ -118,7 +118,7 @@ void Extremes::finish(RunReport& report) {
     table = read_csv(path);
     return std::nullopt;
   });
-  nlohmann::json section;
+  nlohmann::json section = {{"every", every_}, {"particles", context_.method.particles()->getGlobalNumElements()}};
   if (context_.communicator->getRank() == 0) {
     for (std::size_t component = 0; component < fields_.size(); ++component) {
       nlohmann::json& entry = section[fields_[component].name];

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Teuchos_CommHelpers.hpp>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -115,7 +116,12 @@ std::string table(const QueryAnswers& answers, const Communicator& communicator)
     const std::vector<double> row = row_of(answers, i);
     std::copy(row.begin(), row.end(), mine.begin() + static_cast<std::ptrdiff_t>((answers.first + i) * names.size()));
   }
-  Teuchos::reduce(mine.data(), all.data(), static_cast<int>(mine.size()), Teuchos::REDUCE_SUM, 0, communicator);
+  // MPI counts in int.
+  constexpr std::size_t piece = std::size_t{1} << 28;
+  for (std::size_t begin = 0; begin < mine.size(); begin += piece) {
+    const auto count = static_cast<int>(std::min(piece, mine.size() - begin));
+    Teuchos::reduce(mine.data() + begin, all.data() + begin, count, Teuchos::REDUCE_SUM, 0, communicator);
+  }
   if (communicator.getRank() != 0) return {};
   for (std::size_t point = 0; point < answers.points.count(); ++point) {
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(point * names.size());

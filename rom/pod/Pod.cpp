@@ -156,7 +156,9 @@ Pod pod(const Snapshots& snapshots, const PodSettings& settings, const Communica
   dense::broadcast(communicator, small.to_modes.data(), small.to_modes.size());
 
   const std::size_t count = snapshots.appended();
-  Pod result{{}, small.singular_values, truncate(small.singular_values, count, settings), count, 0.0, false};
+  Pod result{
+      {},   small.singular_values, truncate(small.singular_values, count, settings, snapshots.count()), count, 0.0,
+      false};
   if (settings.algorithm == PodSettings::Algorithm::randomised) {
     double kept = 0.0;
     for (int k = 0; k < result.truncation.rank; ++k) kept += std::pow(small.singular_values[k], 2);

@@ -59,7 +59,8 @@ double PodSettings::resolution(std::size_t snapshots) const {
   return algorithm == Algorithm::gram ? std::sqrt(round_off) : 10.0 * round_off;
 }
 
-Truncation truncate(const std::vector<double>& singular_values, std::size_t snapshots, const PodSettings& settings) {
+Truncation truncate(const std::vector<double>& singular_values, std::size_t snapshots, const PodSettings& settings,
+                    std::optional<std::size_t> held) {
   const double resolution = settings.resolution(snapshots);
   const double floor = singular_values.empty() ? 0.0 : resolution * singular_values.front();
   const auto end = std::find_if(singular_values.begin(), singular_values.end(),
@@ -70,12 +71,15 @@ Truncation truncate(const std::vector<double>& singular_values, std::size_t snap
                      "snapshots that differ from the reference state");
   }
   if (settings.rank && *settings.rank > independent && !settings.rank_is_cap) {
+    const bool holds = held && *held < snapshots;
     throw InputError(
         settings.path + ".rank",
-        fmt::format("{} basis vectors are asked for, but of {} snapshots only {} are independent (singular "
+        fmt::format("{} basis vectors are asked for, but of {} snapshots{} only {} are independent (singular "
                     "values above {:.1e} of the largest)",
-                    *settings.rank, snapshots, independent, resolution),
-        fmt::format("a rank of at most {}", independent));
+                    *settings.rank, snapshots,
+                    holds ? fmt::format(", of which snapshots.hold left {} columns,", *held) : "", independent,
+                    resolution),
+        fmt::format("a rank of at most {}{}", independent, holds ? ", or a larger snapshots.hold" : ""));
   }
   const auto weight = [&settings](double sigma) {
     return settings.energy_of == PodSettings::EnergyOf::singular_values ? sigma : sigma * sigma;

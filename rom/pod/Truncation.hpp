@@ -44,7 +44,8 @@ struct Truncation {
 
 /// Smallest rank that keeps the energy asked for (at least `at_least`), or the rank asked for. `singular_values`, of so
 /// many snapshots, descend. Throws InputError if nothing is independent (all snapshots zero) or a rank above
-/// `independent` is asked for.
-Truncation truncate(const std::vector<double>& singular_values, std::size_t snapshots, const PodSettings& settings);
+/// `independent` is asked for. `held`: of how many columns the singular values are, where a hold has made them fewer.
+Truncation truncate(const std::vector<double>& singular_values, std::size_t snapshots, const PodSettings& settings,
+                    std::optional<std::size_t> held = std::nullopt);
 
 }  // namespace kiln

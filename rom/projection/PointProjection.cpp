@@ -23,6 +23,8 @@ PointProjection::PointProjection(Projection& projection, const ParameterPoints& 
       test_(points.count(), rows_, size_),
       inverse_transposed_(points.count(), size_, size_),
       norms_(points.count()),
+      test_norms_(points.count()),
+      goals_(points.count()),
       everyone_(points.count(), 1),
       iterates_(points.count()),
       moves_(points.count()),
@@ -73,6 +75,11 @@ void PointProjection::linearise_point(std::size_t point, const StepResidual& res
   Projection::require_regular(factors_.factor(small_), residual.time);
   factors_.inverse_transposed(inverse_);
   test_.put(point, test);
+  double squares = 0.0;
+  for (std::size_t k = 0; k < size_; ++k) {
+    for (std::size_t i = 0; i < rows_; ++i) squares += test(i, k) * test(i, k);
+  }
+  test_norms_[point] = std::sqrt(squares);
   inverse_transposed_.put(point, inverse_);
 }
 
@@ -112,6 +119,18 @@ void PointProjection::reduce_residual(const StepResidual& residual, double gamma
   });
   for (std::size_t point = 0; point < norms_.size(); ++point) {
     if (iterates_[point] != 0) norms_[point] = std::sqrt(norms_[point]);
+  }
+}
+
+void PointProjection::set_goals(ConstMatrixView history) {
+  over_points(goals_.size(), iterates_, [&](std::size_t point, auto width) {
+    using Width = decltype(width);
+    typename Width::Numbers sum{};
+    for (std::size_t i = 0; i < rows_; ++i) sum += Width::at(&history(point, i)) * Width::at(&history(point, i));
+    Width::store(&goals_[point], sum);
+  });
+  for (std::size_t point = 0; point < goals_.size(); ++point) {
+    goals_[point] = Projection::goal(settings_.tolerance, norms_[point], test_norms_[point], std::sqrt(goals_[point]));
   }
 }
 
@@ -163,7 +182,7 @@ void PointProjection::iterate(const StepResidual& residual, ConstMatrixView hist
       if (iterates_[point] == 0) continue;
       SolveReport& solve = points[point].solve;
       solve.last_norm = norms_[point];
-      solve.converged = !(norms_[point] > settings_.tolerance * solve.first_norm);
+      solve.converged = !(norms_[point] > goals_[point]);
       if (solve.converged || iteration == settings_.iterations) {
         iterates_[point] = 0;
         continue;
@@ -209,6 +228,7 @@ void PointProjection::solve(const StepResidual& residual, ConstMatrixView histor
     for (Point& point : points) point.solve.iterations = 1;
     return evaluate(x, residual.time, u, f);
   }
+  set_goals(history);
   iterate(residual, history, x, f, points);
   std::copy_n(state_.data(), u.size(), u.data());
 }

@@ -45,6 +45,8 @@ class PointProjection {
                std::vector<Point>& points);
   /// Fills g_ = Ψᵀr and norms_ of the points that iterate, from state_ and the rate times γ.
   void reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history, ConstMatrixView f);
+  /// Fills goals_ from norms_, those of the step's first residual.
+  void set_goals(ConstMatrixView history);
   /// x ← x − (ΨᵀJ̃Φ)⁻¹ g_ of the points that iterate.
   void update(MatrixView x);
   /// Leaves points behind whose residual is not finite or has grown past what counts as divergence.
@@ -67,10 +69,12 @@ class PointProjection {
   PointMatrices inverse_transposed_;  ///< (ΨᵀJ̃Φ)⁻ᵀ of each point
 
   // Handed on in each iteration, without an owner to count.
-  MatrixView state_;           ///< points by sources × components
-  MatrixView residual_;        ///< points by rows × components
-  MatrixView g_, step_;        ///< points × M
-  std::vector<double> norms_;  ///< ‖Ψᵀr‖₂ of each point
+  MatrixView state_;                ///< points by sources × components
+  MatrixView residual_;             ///< points by rows × components
+  MatrixView g_, step_;             ///< points × M
+  std::vector<double> norms_;       ///< ‖Ψᵀr‖₂ of each point
+  std::vector<double> test_norms_;  ///< ‖Ψ‖_F of each point
+  std::vector<double> goals_;       ///< Projection::goal of each point
   PointMask everyone_;
   PointMask iterates_;         ///< those that have not converged yet
   std::vector<double> moves_;  ///< the same as numbers, for vectors

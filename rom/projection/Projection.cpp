@@ -4,6 +4,7 @@
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Loop.hpp"
@@ -27,11 +28,13 @@ void form_residual(const StepResidual& step, const VectorView& state, const Rate
       KOKKOS_LAMBDA(const LocalIndex i) { r(i) = alpha * u(i) - gamma * f(i) + history(i); });
 }
 
-double norm_of(const VectorView& values) {
+double squares_of(const double* values, std::size_t count) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < values.extent(0); ++k) sum += values(k) * values(k);
-  return std::sqrt(sum);
+  for (std::size_t k = 0; k < count; ++k) sum += values[k] * values[k];
+  return sum;
 }
+
+double norm_of(const VectorView& values) { return std::sqrt(squares_of(values.data(), values.extent(0))); }
 
 void copy(const ConstVectorView& from, const VectorView& to) { std::copy_n(from.data(), to.extent(0), to.data()); }
 
@@ -108,6 +111,20 @@ void Projection::factor(double time) {
   dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
   reciprocal_condition_ = factors_.factor(small_);
   require_regular(reciprocal_condition_, time);
+  double squares = 0.0;
+  for (std::size_t k = 0; k < test_.extent(1); ++k) squares += squares_of(&test_(0, k), test_.extent(0));
+  test_norm_ = root_over_ranks(squares);
+}
+
+double Projection::root_over_ranks(double squares) const {
+  if (communicator_->getSize() == 1) return std::sqrt(squares);
+  double total = 0.0;
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 1, &squares, &total);
+  return std::sqrt(total);
+}
+
+double Projection::goal(double tolerance, double first_norm, double test_norm, double history_norm) {
+  return std::max(tolerance * first_norm, 4.0 * std::numeric_limits<double>::epsilon() * test_norm * history_norm);
 }
 
 void Projection::require_regular(double reciprocal_condition, double time) {
@@ -197,7 +214,8 @@ SolveReport Projection::solve(const StepResidual& residual, VectorView x, Vector
   if (!std::isfinite(norm)) throw_diverged(not_finite, residual.time, f, residual_);
   report.residuals = 1;
   report.first_norm = norm;
-  const double goal = settings_.tolerance * norm;
+  const double goal = this->goal(settings_.tolerance, norm, test_norm_,
+                                 root_over_ranks(squares_of(residual.history.data(), residual.history.extent(0))));
   bool descending = true;
   while (norm > goal && report.iterations < settings_.iterations && descending) {
     if (when_factored_ == Factors::every_iteration) factor(residual.time);

@@ -83,6 +83,10 @@ class Projection {
   /// stage: how residual snapshots are taken.
   void observe_residuals(std::function<void(ConstVectorView)> observer) { observer_ = std::move(observer); }
 
+  /// What ‖Ψᵀr‖ is to fall to: the tolerance of what it was first, or the round-off of its own terms, ‖Ψ‖_F ‖h‖ ε,
+  /// which no update can bring it below.
+  static double goal(double tolerance, double first_norm, double test_norm, double history_norm);
+
  private:
   void linearise(double alpha, double gamma, ConstVectorView x, double time);
   /// Ψ and the factors of Ψᵀ J̃Φ, from J̃Φ.
@@ -92,6 +96,7 @@ class Projection {
   /// finite.
   double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
   void project(const VectorView& rows, const VectorView& g);
+  double root_over_ranks(double squares) const;
   /// û ← û + scale · step_.
   void move(VectorView x, double scale) const;
   /// The step of an explicit scheme in an affine trial space, linear in û: one update, one evaluation of f.
@@ -124,6 +129,7 @@ class Projection {
   MatrixView jacobian_tangent_;   ///< J̃Φ
   MatrixView small_;              ///< Ψᵀ J̃Φ, overwritten by its factors
   ConstMatrixView test_;          ///< Ψ
+  double test_norm_ = 0.0;        ///< ‖Ψ‖_F over all ranks
   dense::LuFactors factors_;
   double reciprocal_condition_ = 1.0;
   long long linearisations_ = 0;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "framework/base/Error.hpp"
@@ -270,11 +271,25 @@ TrialErrors ProcedureTwo::try_all(const std::string& method, const std::string& 
   return worst;
 }
 
+void ProcedureTwo::check_ranks(std::size_t snapshots, std::optional<int> hold) const {
+  const std::size_t most =
+      std::min(snapshots, static_cast<std::size_t>(hold.value_or(std::numeric_limits<int>::max())));
+  if (!basis_settings_.rank || basis_settings_.rank_is_cap || static_cast<std::size_t>(*basis_settings_.rank) <= most) {
+    return;
+  }
+  throw InputError(
+      block_.name() + ".basis.rank",
+      fmt::format("{} basis vectors are more than the {} snapshots that are held", *basis_settings_.rank, most),
+      fmt::format("at most {}, {}", most,
+                  most < snapshots ? "or a larger snapshots.hold" : "or a smaller snapshots.every"));
+}
+
 std::unique_ptr<FullOrderRuns> ProcedureTwo::full_order_runs() const {
   const Teuchos::ParameterList& snapshots = block_.sublist("snapshots");
   FullOrderRuns::Settings settings{span_, every_, std::nullopt, quiet_};
   if (windows_.count == 1 && snapshots.isParameter("hold")) settings.hold = snapshots.get<int>("hold");
   auto runs = std::make_unique<FullOrderRuns>(input_, block_, settings, communicator_);
+  check_ranks(runs->learnt() * static_cast<std::size_t>(this->snapshots()), settings.hold);
   const Model& model = *runs->model();
   Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
       ->check(static_cast<GlobalIndex>(model.rows()->getGlobalNumElements()), static_cast<int>(model.fields().size()),

@@ -40,6 +40,8 @@ class ProcedureTwo : public Trainer {
  private:
   /// Those of stage 1, before they run. Throws InputError for what the model rules out.
   std::unique_ptr<FullOrderRuns> full_order_runs() const;
+  /// Throws InputError for a rank of the basis above what so many snapshots, of which `hold` are held, can give.
+  void check_ranks(std::size_t snapshots, std::optional<int> hold) const;
   void run_full_order(RunReport& report);
   /// How many states of a run are kept, the initial one apart.
   int snapshots() const;

@@ -56,7 +56,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   fuzz::refuses_or_does([&] {
     const int step = Checkpoint::restore(fuzz::scratch(""), run.identity, *run.method, *run.scheme, run.x,
-                                         run.span.last_step, fuzz::alone());
+                                         run.span.last_step, fuzz::alone())
+                         .step;
     if (step < 0 || step > run.span.last_step) fuzz::found("a step outside the run");
   });
   return 0;
