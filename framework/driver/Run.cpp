@@ -308,7 +308,6 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
            {"first_step", assembly->span().first_step},
            {"step_s", assembly->span().step}};
   report_origins(hashes, report, *communicator);
-  warn(assembly->method().warnings(), report, *communicator);
 
   std::exception_ptr failure;
   const Stopwatch loop;
@@ -330,6 +329,7 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
   const Seconds stepping = elapsed(loop, *communicator);
   report.section("solve") = totals.facts();
   warn(totals.warnings(), report, *communicator);
+  warn(assembly->method().warnings(), report, *communicator);
   try {
     assembly->finish(report);
   } catch (const std::exception& error) {

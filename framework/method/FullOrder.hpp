@@ -53,7 +53,7 @@ class FullOrder : public Method {
 
   void save(hdf5::Group& group) const override;
   void restore(const hdf5::Group& group) override;
-  std::vector<std::string> warnings() const override { return {}; }
+  std::vector<std::string> warnings() const override { return model_->warnings(); }
   void report(nlohmann::json& section) const override;
 
   const std::shared_ptr<Model>& model() const { return model_; }

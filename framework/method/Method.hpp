@@ -90,8 +90,8 @@ class Method {
   virtual void save(hdf5::Group& group) const = 0;
   virtual void restore(const hdf5::Group& group) = 0;
 
-  /// What a user is to know before the answers to the parameters of now are believed, a sentence each. The same on
-  /// every rank.
+  /// What a user is to know before the answers so far, to the parameters of now, are believed, a sentence each. The
+  /// same on every rank. Collective.
   virtual std::vector<std::string> warnings() const = 0;
   /// The method's own lines of the run report, e.g. basis rank and sampled particles.
   virtual void report(nlohmann::json& section) const = 0;

@@ -78,6 +78,10 @@ class Model {
   /// add to what its method reports anyway keeps the empty list. Collective.
   virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
 
+  /// What of the rates asked for so far a user is to know before believing the run, a sentence each, e.g. that a heat
+  /// source has heated nothing. A model without doubts keeps the empty list. The same on every rank. Collective.
+  virtual std::vector<std::string> warnings() const { return {}; }
+
   Parameters& parameters() { return parameters_; }
   const Parameters& parameters() const { return parameters_; }
 

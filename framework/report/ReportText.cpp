@@ -25,7 +25,7 @@ bool ends_with(const std::string& text, const std::string& ending) {
 /// Splits "wall_s" into "wall" and "s".
 std::pair<std::string, std::string> name_and_unit(std::string key) {
   static const std::vector<std::pair<std::string, std::string>> endings = {
-      {"_kelvin", "K"}, {"_percent", "%"}, {"_bytes", "B"}, {"_s", "s"}, {"_m", "m"}};
+      {"_kelvin", "K"}, {"_watt", "W"}, {"_percent", "%"}, {"_bytes", "B"}, {"_s", "s"}, {"_m", "m"}};
   std::string unit;
   for (const auto& [ending, symbol] : endings) {
     if (ends_with(key, ending)) {

@@ -134,6 +134,7 @@ HeatModel::HeatModel(const Teuchos::ParameterList& list, const Context& context,
                      fmt::format("a {} heats no particle: none has a heated area", source.get<std::string>("type")),
                      "heated areas, as a column 'area' of a particle file, or heat_source: none");
   }
+  adds_absorbed_ = heat_source_->heats();
 }
 
 void HeatModel::check(const char* method, std::size_t u, std::size_t f) const {
@@ -182,6 +183,27 @@ void HeatModel::update_absorbed(double time) const {
       absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) { absorbed(heated(h)) = flux(h) * areas(heated(h)); });
   absorbed_of_.remember(heat_source_->parameters());
   absorbed_time_ = time;
+  if (!adds_absorbed_) return;
+  absorbed_sum_ += sum(
+      absorbed_label, number, KOKKOS_LAMBDA(LocalIndex h) { return absorbed(heated(h)); });
+  ++absorbed_times_;
+}
+
+std::optional<double> HeatModel::mean_absorbed() const {
+  const Communicator& communicator = *domain_.rows->getComm();
+  double total = 0.0;
+  long long times = 0;
+  Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, 1, &absorbed_sum_, &total);
+  // A rank without heated rows asks for nothing.
+  Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &absorbed_times_, &times);
+  return times == 0 ? std::nullopt : std::optional<double>(total / static_cast<double>(times));
+}
+
+std::vector<std::string> HeatModel::warnings() const {
+  if (mean_absorbed() != 0.0) return {};
+  return {
+      "the heat source has heated no particle: is it on, does it pass the part, and is it as wide as the particles' "
+      "spacing?"};
 }
 
 void HeatModel::rate(ConstVectorView u, double time, VectorView of_rows) const {
@@ -207,8 +229,10 @@ std::vector<std::pair<std::string, double>> HeatModel::facts() const {
   const double mine = static_cast<double>(domain_.pairs.neighbours.extent(0));
   double pairs = 0.0;
   Teuchos::reduceAll(*domain_.rows->getComm(), Teuchos::REDUCE_SUM, 1, &mine, &pairs);
-  return {{"pairs", pairs},
-          {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
+  std::vector<std::pair<std::string, double>> facts{
+      {"pairs", pairs}, {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
+  if (const auto watt = mean_absorbed()) facts.emplace_back("mean_absorbed_watt", *watt);
+  return facts;
 }
 
 }  // namespace kiln

@@ -3,6 +3,7 @@
 #include <Teuchos_ParameterList.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "framework/model/LastParameters.hpp"
 #include "framework/model/LastState.hpp"
@@ -57,8 +58,10 @@ class HeatModel final : public Model, public PairwiseModel {
   /// eight points.
   std::unique_ptr<PointRates> at_points(const ParameterPoints& points) override;
 
-  /// `pairs`: directed pairs of neighbours, and `neighbours_per_particle`.
+  /// `pairs`: directed pairs of neighbours, `neighbours_per_particle`, and `mean_absorbed_watt` over the times so far.
   std::vector<std::pair<std::string, double>> facts() const override;
+  /// Where a source that heats has heated no particle so far.
+  std::vector<std::string> warnings() const override;
 
   /// Particles, pairs and weights of this rank.
   const HeatDomain& domain() const { return domain_; }
@@ -81,6 +84,8 @@ class HeatModel final : public Model, public PairwiseModel {
   /// Fills absorbed_ at the heated rows, if it is not that of this time and of the source's parameters as they are: one
   /// evaluation of the source serves all iterations of a step.
   void update_absorbed(double time) const;
+  /// W, over all ranks; nothing where no rate has been asked for. Collective.
+  std::optional<double> mean_absorbed() const;
   /// Columns first_column … of `product`, at most Width.
   template <int Width>
   void apply_columns(ConstMatrixView v, MatrixView product, int first_column) const;
@@ -114,11 +119,14 @@ class HeatModel final : public Model, public PairwiseModel {
   VectorView absorbed_;     ///< q_i A_i in W of every row, of absorbed_of_ and absorbed_time_
   mutable LastParameters absorbed_of_;
   mutable double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
-  ThermalStateView states_;                              ///< of the sources and, last, nobody
-  mutable LastState states_of_;                          ///< whose states_ they are
-  VectorView fluxes_;                                    ///< pair sums of every row
-  mutable bool fluxes_hold_ = false;                     ///< whether fluxes_ are those of states_
-  VectorView conductances_;                              ///< pair sums of every row
+  bool adds_absorbed_ = false;            ///< the full model: of samples it says little and costs as much as their sums
+  mutable double absorbed_sum_ = 0.0;     ///< W: of this rank's rows, over the times so far
+  mutable long long absorbed_times_ = 0;  ///< how many these are
+  ThermalStateView states_;               ///< of the sources and, last, nobody
+  mutable LastState states_of_;           ///< whose states_ they are
+  VectorView fluxes_;                     ///< pair sums of every row
+  mutable bool fluxes_hold_ = false;      ///< whether fluxes_ are those of states_
+  VectorView conductances_;               ///< pair sums of every row
   mutable Kokkos::View<ThermalSlopes*, Device> slopes_;  ///< made by the first Jacobian
   mutable PackedView packed_;
   mutable Teuchos::RCP<CrsMatrix> matrix_;

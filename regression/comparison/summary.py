@@ -15,11 +15,18 @@ import numpy as np
 from run_folder import RunFolder, probe_errors, reconstruct
 
 
+def ratio(above, below):
+    """None where one of them is not known."""
+    return None if above is None or below is None else above / below
+
+
 def run_figures(run):
+    """Times are None of a run that was continued: its report knows those of its last part only."""
     report = run.report
+    whole = report["run"].get("first_step", 0) == 0
     return {
-        "wall_s": report["time"]["loop_wall_s"],
-        "cpu_s": report["time"]["loop_cpu_s"],
+        "wall_s": report["time"]["loop_wall_s"] if whole else None,
+        "cpu_s": report["time"]["loop_cpu_s"] if whole else None,
         "setup_wall_s": report["time"]["setup_wall_s"],
         "ranks": report["provenance"]["ranks"],
         "steps": report["run"]["steps"],
@@ -40,6 +47,10 @@ def field_error(full, reduced, reduction_file):
     return 100 * np.linalg.norm(approximate - states) / np.linalg.norm(rise)
 
 
+def with_setup(figures):
+    return None if figures["wall_s"] is None else figures["wall_s"] + figures["setup_wall_s"]
+
+
 def full_order_figures(full):
     """What a full-order run says of itself, per pair of neighbours as well."""
     figures = run_figures(full)
@@ -47,7 +58,8 @@ def full_order_figures(full):
     pairs = method["model"]["pairs"]
     figures["particles"] = method["particles"]
     figures["neighbours_per_particle"] = pairs / figures["particles"]
-    figures["ns_cpu_per_pair"] = 1e9 * figures["cpu_s"] / (full.report["solve"]["residuals"] * pairs)
+    seconds_per_pair = ratio(figures["cpu_s"], full.report["solve"]["residuals"] * pairs)
+    figures["ns_cpu_per_pair"] = seconds_per_pair and 1e9 * seconds_per_pair
     return figures
 
 
@@ -81,9 +93,9 @@ def compare_runs(full, reduced, reduction_file):
         "fom": fom,
         name: figures,
         "speedup": {
-            "wall": fom["wall_s"] / figures["wall_s"],
-            "cpu": fom["cpu_s"] / figures["cpu_s"],
-            "wall_with_setup": (fom["wall_s"] + fom["setup_wall_s"]) / (figures["wall_s"] + figures["setup_wall_s"]),
+            "wall": ratio(fom["wall_s"], figures["wall_s"]),
+            "cpu": ratio(fom["cpu_s"], figures["cpu_s"]),
+            "wall_with_setup": ratio(with_setup(fom), with_setup(figures)),
         },
         "probes": {
             name: {

@@ -44,7 +44,10 @@ def figures_of(summary):
                 method = case.split("-")[0]
                 figures.update({f"{name}/{key}": found[key] for key in OF_CASE})
                 figures.update({f"{name}/{key}": found[method][key] for key in OF_RUN})
-                figures.update({f"{name}/speedup/{key}": found["speedup"][key] for key in ("wall", "cpu")})
+                figures.update({
+                    f"{name}/speedup/{key}": found["speedup"][key] for key in ("wall", "cpu")
+                    if found["speedup"][key] is not None
+                })
     return figures
 
 

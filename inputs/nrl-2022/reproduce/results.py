@@ -145,11 +145,12 @@ class Results:
     def best(self, experiment, setting, method):
         """The complete case of a method that saves most wall time, or None."""
         found = [case for case in self.find(experiment, setting, method) if not case.printed and self.summary(case)]
-        return max(found, key=lambda case: self.summary(case)["speedup"]["wall"], default=None)
+        return max(found, key=lambda case: self.summary(case)["speedup"]["wall"] or 0.0, default=None)
 
     def over_ranks(self, case):
-        """Ranks → the figures of this case's complete runs on that many, from all studies."""
-        everything = [other for other in self.cases + self.further if other.name == case.name and other.complete]
+        """Ranks → the figures of this case's complete runs on that many, from all studies; none of continued ones."""
+        everything = [other for other in self.cases + self.further
+                      if other.name == case.name and other.complete and other.times["wall_s"] is not None]
         return {other.times["ranks"]: other.times for other in reversed(everything)}
 
 

@@ -3,6 +3,7 @@
 import pandas as pd
 
 from results import METHODS, METHOD_TITLES, SETTING_TITLES, SETTINGS, reduction_figures
+from summary import ratio
 
 MISSING = "not run"
 NOT_IN_REPORT = "–"
@@ -89,7 +90,7 @@ def accuracy(results):
                         "CPU, s": number(case.times["cpu_s"]),
                         "wall saving": number(summary["speedup"]["wall"]),
                         "CPU saving": number(summary["speedup"]["cpu"]),
-                        "state": "complete",
+                        "state": "complete" if case.times["wall_s"] is not None else "complete, continued: no times",
                     }
                 else:
                     row["state"] = "complete, but not what it needs" if case.complete else state(case)
@@ -163,7 +164,7 @@ def as_printed(results, published, experiments=(1, 3), setting="published_case_1
             row[f"CPU, s, {title}"] = number(case.times["cpu_s"]) if summary else ""
             row[f"SWT, {title}"] = number(summary["speedup"]["wall"]) if summary else ""
         if kept and printed and results.summary(kept) and results.summary(printed):
-            row["as printed / kept, wall"] = number(printed.times["wall_s"] / kept.times["wall_s"])
+            row["as printed / kept, wall"] = number(ratio(printed.times["wall_s"], kept.times["wall_s"]))
         rows.append(row)
     return pd.DataFrame(rows).fillna("")
 
