@@ -104,14 +104,23 @@ class KilnTest(unittest.TestCase):
     def kiln(self, *arguments, **how):
         return kiln(self.folder, *arguments, **how)
 
-    def solve(self, command, *overrides, into="results", ranks=1, options=()):
-        """`kiln run` or `kiln train` of the small case, which must succeed in silence."""
+    def solve(self, command, *overrides, into="results", ranks=1, options=(), warnings=()):
+        """`kiln run` or `kiln train` of the small case, which must succeed in silence but for these warnings."""
         words = [word for override in overrides for word in ("--set", override)]
         outcome = self.kiln(
             command, SMALL, *words, "--set", f"output.directory={into}", "--quiet", *options, ranks=ranks
         )
-        self.assertEqual((outcome.status, outcome.stdout, outcome.stderr), (0, "", ""), overrides)
+        self.assertEqual((outcome.status, outcome.stdout), (0, ""), (overrides, outcome.stderr))
+        self.told(outcome, warnings)
         return self.folder / into
+
+    def told(self, outcome, warnings):
+        """The standard error output is a warning for each of these texts, which it holds, and nothing else."""
+        lines = outcome.stderr.splitlines()
+        self.assertEqual(len(lines), len(warnings), outcome.stderr)
+        for line, text in zip(lines, warnings):
+            self.assertTrue(line.startswith("warning: "), line)
+            self.assertIn(text, line)
 
 
 def digests(folder):

@@ -167,6 +167,20 @@ class MessagesTest(KilnTest):
         words = ["reduction.windows.count", "41 windows are more than the 40 snapshots", "at most 40"]
         self.wrong("train", SMALL, "--set", "reduction.windows.count=41", lines=1, words=words)
 
+    def test_a_training_that_cannot_be_is_told_before_it_runs(self):
+        few = "10 particles with 1 component each cannot determine 24 residual modes"
+        for changes, *words in (
+            (["sampling.samples=10"], "sampling.samples: ", few),
+            (["sampling.samples=1729"], "sampling.samples: ", "1729 particles are asked for"),
+            (["sampling.seeds=[5, 1728]"], "sampling.seeds.1: ", "there is no particle 1728"),
+            (["basis.rank=41", "residual_basis.rank=41", "sampling.samples=60"], "basis.rank: ", "41 basis vectors are more than the 40"),
+            (["snapshots.hold=8"], "basis.rank: ", "12 basis vectors are more than the 8 snapshots that are held"),
+            (["clustering={type: robust}"], "clustering: ", "is no source of row"),
+        ):  # fmt: skip
+            sets = [word for change in changes for word in ("--set", f"reduction.{change}")]
+            for command in ("check", "train"):
+                self.wrong(command, SMALL, *sets, lines=1, words=words)
+
     def test_training_without_a_reduction_block(self):
         text = SMALL.read_text()
         (self.folder / "case.yaml").write_text(text[: text.index("reduction:\n")] + text[text.index("output:") :])

@@ -1,7 +1,9 @@
 """What Kiln leaves opens in the programs that users have, and what it prints can be fed back to it."""
 
 import json
+import os
 import re
+import shutil
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -153,6 +155,36 @@ class RunFilesTest(KilnTest):
         times = report["time"]
         parts = times["steps_wall_s"] + times["observers_wall_s"]
         self.assertTrue(0.9 * times["loop_wall_s"] < parts <= times["loop_wall_s"], times)
+
+    def test_steps_that_were_left_unsolved_are_told(self):
+        words = [w for o in ("time.newton.iterations=1", "time.newton.tolerance=1e-12") for w in ("--set", o)]
+        outcome = self.kiln("run", SMALL, *words, "--set", "output.directory=capped", "--quiet", ranks=2)
+        self.assertEqual((outcome.status, outcome.stdout), (0, ""))
+        text = "40 of 40 steps were left unsolved at the cap of iterations"
+        self.told(outcome, [text])
+        report = json.loads((self.folder / "capped/fom/report.json").read_text())
+        self.assertEqual(report["solve"]["capped_steps"], 40)
+        self.assertTrue(report["run"]["warnings"][0].startswith(text))
+        self.assertIn(text, (self.folder / "capped/fom/report.txt").read_text())
+        outcome = self.kiln("train", SMALL, *words, "--set", "output.directory=capped", "--quiet")
+        self.assertIn("warning: full order: 40 of 40 steps were left unsolved", outcome.stderr)
+
+    def test_a_source_that_heats_nothing_is_told(self):
+        self.solve("run", "model.heat_source.start=[1 m, 1 m]", into="missed", ranks=2,
+                   warnings=["the heat source has heated no particle"])
+        self.solve("run", into="met")
+        absorbed = [json.loads((self.folder / f"{into}/fom/report.json").read_text())["method"]["model"]["mean_absorbed_watt"]
+                    for into in ("missed", "met")]
+        self.assertEqual(absorbed[0], 0.0)
+        # The beam is as wide as a spacing and a half; printed as it stands in the report it would deposit π times as much.
+        self.assertAlmostEqual(absorbed[1], 20.0, delta=2.0)
+
+    def test_names_that_are_no_utf_8(self):
+        name = os.fsdecode(b"caf\xe9.yaml")
+        shutil.copy(SMALL, self.folder / name)
+        outcome = self.kiln("run", name, "--set", "output.directory=named", "--quiet")
+        self.assertEqual((outcome.status, outcome.stderr), (0, ""))
+        self.assertIn("caf\ufffd.yaml", json.loads((self.folder / "named/fom/report.json").read_text())["run"]["input"])
 
     def test_nothing_else_is_left(self):
         expected = ["checkpoint.h5", "extremes.csv", "probes.csv", "probes.json", "report.json", "report.txt"]

@@ -3,6 +3,7 @@
 import json
 import shutil
 
+import h5py
 import numpy as np
 import pandas
 
@@ -112,11 +113,69 @@ class ReductionTest(KilnTest):
         power = "model.heat_source.power=22 W"
         trained = self.probes("fom")
         self.solve("run", power)
-        self.solve("run", power, "method.type=gnat")
+        outside = "the training stated are not of these parameters: heat_source.power is 22 W, and 20 W in the training"
+        self.solve("run", power, "method.type=gnat", warnings=[outside])
+        report = json.loads((self.folder / "results/gnat/report.json").read_text())
+        self.assertEqual(len(report["run"]["warnings"]), 1)
+        self.assertIn(outside, report["run"]["warnings"][0])
         full, reduced = self.probes("fom"), self.probes("gnat")
         rise = np.abs(full - full[0]).max()
         self.assertLess(np.abs(reduced - full).max() / rise, OTHER_POWER_BOUND)
         self.assertGreater(np.abs(trained - full).max() / rise, 2.0 * OTHER_POWER_BOUND, "the bound tells powers apart")
+
+    def test_a_report_states_the_errors_of_the_training(self):
+        training = json.loads((self.folder / "results/training/report.json").read_text())["training"]
+        self.solve("run", "method.type=gnat")
+        report = json.loads((self.folder / "results/gnat/report.json").read_text())
+        self.assertEqual(report["method"]["trial"], training["trial"])
+        self.assertGreater(training["trial"]["worst_query_error"], 0.0)
+        self.assertNotIn("warnings", report["run"])
+        held = report["observers"]["extremes"]["particles"]
+        self.assertEqual((held, report["observers"]["extremes"]["every"]), (report["method"]["held"], 1))
+        self.assertLess(held, report["method"]["full_order_particles"])
+
+    def test_points_that_were_tried_are_inside(self):
+        points = "reduction.try_on={points: {heat_source.power: [24 W]}}"
+        self.solve("train", points, into="tried")
+        power = "model.heat_source.power={} W".format
+        self.solve("run", points, power(22), "method.type=gnat", into="tried")
+        self.solve("run", points, power(24), "method.type=lspg", into="tried")
+        self.solve("run", points, power(24.1), "method.type=lspg", into="tried",
+                   warnings=["heat_source.power is 24.1 W, and 20 to 24 W in the training"])
+        queries = "queries={points: {heat_source.power: [19 W, 21 W, 25 W]}}"
+        self.solve("run", points, queries, "method.type=gnat", into="tried",
+                   warnings=["point 0: the errors that the training stated are not of these parameters"])
+        report = json.loads((self.folder / "tried/gnat/report.json").read_text())
+        self.assertTrue(report["run"]["warnings"][0].endswith("; and 1 more points"), report["run"]["warnings"])
+        self.assertIn("reduction_seal", report["method"])
+
+    def test_a_probe_is_never_moved_to_another_particle(self):
+        with h5py.File(self.solve("run", "method.type=gnat") / "gnat/run.h5") as file:
+            held, positions = set(file["particle"][:].tolist()), file["position"][:]
+        with h5py.File(self.solve("run", into="full") / "fom/run.h5") as file:
+            everywhere, temperatures = file["position"][:], file["temperature"][:]
+        other = next(p for p in range(len(everywhere)) if p not in held and any(
+            np.linalg.norm(everywhere[p] - position) < 1.01e-4 for position in positions))
+        probe = "output.probes={{points: [{{name: other, position: [{:.6g}, {:.6g}, {:.6g}]}}]}}".format
+        outcome = self.kiln("run", SMALL, "--set", "method.type=gnat", "--set", probe(*everywhere[other]), "--quiet")
+        self.assertEqual(outcome.status, 2, outcome.stderr)
+        self.assertIn("probe 'other' at ", outcome.stderr)
+        self.assertIn("this method does not hold the particle nearest to it; expected ", outcome.stderr)
+        # On a particle that is held, or less than half a spacing away from one.
+        place = positions[len(positions) // 2] + [0, 0, 0.4e-4 if positions[len(positions) // 2][2] < 4e-4 else -0.4e-4]
+        self.solve("run", "method.type=gnat", probe(*place))
+        places = json.loads((self.folder / "results/gnat/probes.json").read_text())
+        nearest = int(np.argmin(np.linalg.norm(everywhere - place, axis=1)))
+        self.assertEqual(places[0]["particle"], nearest)
+        # A question of the training may lie anywhere.
+        asked = "reduction.queries=[{position: [1.05 mm, 0.05 mm, 0.25 mm]}]"
+        self.solve("train", asked, into="asked")
+        self.solve("run", asked, "method.type=gnat", probe(1.05e-3, 0.05e-3, 0.25e-3), into="asked")
+        place = json.loads((self.folder / "asked/gnat/probes.json").read_text())[0]
+        distances = np.linalg.norm(everywhere - [1.05e-3, 0.05e-3, 0.25e-3], axis=1)
+        self.assertAlmostEqual(distances[place["particle"]], distances.min(), delta=1e-12)
+        told = pandas.read_csv(self.folder / "asked/gnat/probes.csv").filter(like="temperature").to_numpy()[-1, 0]
+        self.assertLess(abs(told - temperatures[-1, place["particle"]]), 0.1)
 
     def test_nothing_is_known_of_later(self):
         for method in ("galerkin", "lspg", "gnat"):

@@ -351,7 +351,11 @@ void run_timed(const Stopwatch& total, const Input& input, const CommandOptions&
 void train_timed(const Stopwatch& total, const Input& input, const CommandOptions& options, const Comm& communicator) {
   const Timers timers("kiln");
   const Teuchos::ParameterList& list = input.list();
-  const auto trainer = located(input, [&] { return make_trainer(input, options.quiet, communicator); });
+  const auto trainer = located(input, [&] {
+    auto made = make_trainer(input, options.quiet, communicator);
+    made->check();
+    return made;
+  });
   const RunFolder folder(training_folder(list), *communicator);
   RunReport report;
   report.section("run") = {{"title", list.get<std::string>("title")},

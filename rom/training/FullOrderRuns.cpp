@@ -12,7 +12,7 @@
 #include "framework/registry/Registry.hpp"
 #include "rom/training/ExtremeRecord.hpp"
 #include "rom/training/Queries.hpp"
-#include "rom/training/SnapshotObserver.hpp"
+#include "rom/training/SnapshotRecord.hpp"
 
 namespace kiln {
 namespace {
@@ -102,7 +102,7 @@ void FullOrderRuns::run_at(std::size_t point) {
   }
   QueryRecord record(method_, trial.queries);
   StateRecord states(method_, trial.steps, trial.states);
-  SnapshotObserver every(method_, snapshots_, settings_.every);
+  SnapshotRecord every(method_, snapshots_, settings_.every);
   ExtremeRecord extremes(method_);
   const std::string label = points_.count() == 1 ? std::string("full order")
                                                  : fmt::format("full order, point {}/{}", point + 1, points_.count());

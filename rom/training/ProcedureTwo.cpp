@@ -299,7 +299,7 @@ std::unique_ptr<FullOrderRuns> ProcedureTwo::full_order_runs() const {
 }
 
 void ProcedureTwo::run_full_order(RunReport& report) {
-  full_order_ = full_order_runs();
+  if (full_order_ == nullptr) check();
   full_order_->run();
   LoopTotals totals;
   for (const LoopTotals& run : full_order_->totals()) totals += run;

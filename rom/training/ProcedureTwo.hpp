@@ -34,7 +34,7 @@ class ProcedureTwo : public Trainer {
   static Specification specification();
   ProcedureTwo(const Teuchos::ParameterList& block, const Context& context);
 
-  void check() const override { full_order_runs(); }
+  void check() override { full_order_ = full_order_runs(); }
   void train(const std::filesystem::path& file, RunReport& report) override;
 
  private:
@@ -75,7 +75,7 @@ class ProcedureTwo : public Trainer {
   PodSettings basis_settings_, residual_settings_;
   WindowSettings windows_;
   int every_;                                  ///< steps between two snapshots
-  std::unique_ptr<FullOrderRuns> full_order_;  ///< made by train()
+  std::unique_ptr<FullOrderRuns> full_order_;  ///< made by check()
   std::unique_ptr<WindowCosts> costs_;         ///< where windows hold an error
 };
 

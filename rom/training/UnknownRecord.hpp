@@ -7,7 +7,7 @@
 
 namespace kiln {
 
-/// Keeps the unknown x of given steps, ascending, which must outlive the observer.
+/// Keeps the unknown x of given steps, ascending, which must outlive the record.
 class UnknownRecord : public StepListener {
  public:
   explicit UnknownRecord(const std::vector<int>& steps) : steps_(steps) {}

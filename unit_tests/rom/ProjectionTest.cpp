@@ -107,6 +107,22 @@ TEST_P(Projection, ReachesTheSameStateWithEveryJacobian) {
   }
 }
 
+/// Counts steps that ended unsolved.
+struct Unsolved : StepListener {
+  int steps = 0;
+  void observe(const Moment& moment) override { steps += moment.solve.converged ? 0 : 1; }
+};
+
+TEST_P(Projection, AStepIsSolvedWhereOnlyRoundOffIsLeft) {
+  Case values;
+  values.tolerance = 1e-17;
+  values.power = 0.0;  // towards a steady state, where a step's first residual is round-off itself
+  values.steps = 200;
+  Unsolved unsolved;
+  march(*of_kind(GetParam(), values, 8, world()), values, {&unsolved});
+  EXPECT_EQ(unsolved.steps, 0);
+}
+
 TEST_P(Projection, KeepsItsJacobianForTheStepsAskedFor) {
   Case values;
   values.steps = 20;

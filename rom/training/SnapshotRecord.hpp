@@ -7,10 +7,10 @@
 namespace kiln {
 
 /// Collects u − u0 of every `every`-th step and of the last one into snapshots over the method's particles.
-class SnapshotObserver : public StepListener {
+class SnapshotRecord : public StepListener {
  public:
-  /// Both must outlive the observer. Takes u0 from the method.
-  SnapshotObserver(Method& method, Snapshots& snapshots, int every);
+  /// Both must outlive the record. Takes u0 from the method.
+  SnapshotRecord(Method& method, Snapshots& snapshots, int every);
 
   void observe(const Moment& moment) override;
 
@@ -21,7 +21,7 @@ class SnapshotObserver : public StepListener {
   VectorView reference_, state_;
 };
 
-/// Collects u − u0 of given steps, ascending, which must outlive the observer.
+/// Collects u − u0 of given steps, ascending, which must outlive the record.
 class StateRecord : public StepListener {
  public:
   StateRecord(Method& method, const std::vector<int>& steps, Snapshots& states);
@@ -30,7 +30,7 @@ class StateRecord : public StepListener {
 
  private:
   const std::vector<int>& steps_;
-  SnapshotObserver every_;
+  SnapshotRecord every_;
 };
 
 }  // namespace kiln

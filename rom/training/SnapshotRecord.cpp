@@ -1,11 +1,11 @@
-#include "rom/training/SnapshotObserver.hpp"
+#include "rom/training/SnapshotRecord.hpp"
 
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 
 namespace kiln {
 
-SnapshotObserver::SnapshotObserver(Method& method, Snapshots& snapshots, int every)
+SnapshotRecord::SnapshotRecord(Method& method, Snapshots& snapshots, int every)
     : method_(method),
       snapshots_(snapshots),
       every_(every),
@@ -16,7 +16,7 @@ SnapshotObserver::SnapshotObserver(Method& method, Snapshots& snapshots, int eve
   method.state(x, reference_);
 }
 
-void SnapshotObserver::observe(const Moment& moment) {
+void SnapshotRecord::observe(const Moment& moment) {
   if (moment.step == 0 || (moment.step % every_ != 0 && moment.step != moment.last_step)) return;
   method_.state(moment.x, state_);
   for (std::size_t i = 0; i < state_.extent(0); ++i) state_(i) -= reference_(i);
