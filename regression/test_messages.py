@@ -204,6 +204,11 @@ class MessagesTest(KilnTest):
         words = ("model.table.step: '1 degC' counts from a zero of its own", "expected")
         self.wrong("check", SMALL, "--set", "model.table.step=1 degC", lines=1, words=words)
 
+    def test_a_range_that_ends_before_it_begins(self):
+        words = ("model.particles.radius: ", "the least, 0.5, is above the largest, 0.2")
+        random = HERE / "cases" / "vortex-random.yaml"
+        self.wrong("check", random, "--set", "model.particles.radius=[0.5 m, 20 cm]", lines=1, words=words)
+
     def test_a_heat_source_that_heats_nothing(self):
         rows = [f"{i % 3 * 1e-4},{i // 3 % 3 * 1e-4},{i // 9 * 1e-4}\n" for i in range(27)]
         table = self.folder / "particles.csv"

@@ -1,8 +1,12 @@
+#include <fmt/format.h>
+
+#include <Teuchos_Array.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
 
+#include "framework/base/Error.hpp"
 #include "framework/registry/Registry.hpp"
 #include "physics/vortex/GaussianPatches.hpp"
 
@@ -57,6 +61,14 @@ class RandomPatches final : public Vortices {
         .unit("m^2/s")
         .length(2);
     PatchGrid::add_entries(specification);
+    specification.check([](const Teuchos::ParameterList& list, std::vector<Problem>& problems) {
+      for (const char* range : {"radius", "circulation"}) {
+        const auto& ends = list.get<Teuchos::Array<double>>(range);
+        if (ends[0] <= ends[1]) continue;
+        problems.push_back({range, fmt::format("the least, {:g}, is above the largest, {:g}", ends[0], ends[1]),
+                            "the least first", ""});
+      }
+    });
     return specification;
   }
 
