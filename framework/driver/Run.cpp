@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
-#include <Teuchos_StackedTimer.hpp>
-#include <Teuchos_TimeMonitor.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <memory>
 
 #include "framework/base/Error.hpp"
 #include "framework/base/StopRequest.hpp"
-#include "framework/driver/Checkpoint.hpp"
+#include "framework/driver/Assembly.hpp"
 #include "framework/driver/InputHashes.hpp"
 #include "framework/driver/OutputPlace.hpp"
 #include "framework/driver/QueryRun.hpp"
@@ -22,6 +18,7 @@
 #include "framework/files/Json.hpp"
 #include "framework/files/RunFolder.hpp"
 #include "framework/files/StandardOutput.hpp"
+#include "framework/files/TemporaryFolder.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/input/Input.hpp"
 #include "framework/method/Trainer.hpp"
@@ -32,93 +29,11 @@
 #include "framework/report/ReportText.hpp"
 #include "framework/report/RunReport.hpp"
 #include "framework/report/Timing.hpp"
-#include "framework/time/TimeLoop.hpp"
 
 namespace kiln {
 namespace {
 
 using Comm = Teuchos::RCP<const Communicator>;
-
-/// What a restart must have in common with the run it goes on with: all that decides its numbers, and which of them its
-/// tables hold, row after row. `data`: data_identity of the input.
-std::string identity_of(const Teuchos::ParameterList& list, const std::string& data) {
-  Teuchos::ParameterList tables(list.sublist("output"));
-  for (const char* key : {"directory", "checkpoint"}) tables.remove(key, false);
-  return fmt::format("model:\n{}time:\n{}method:\n{}output:\n{}data files:\n{}", to_yaml(list.sublist("model")),
-                     to_yaml(list.sublist("time")), to_yaml(list.sublist("method")), to_yaml(tables), data);
-}
-
-/// Everything one run is made of, built from its input in the order in which the parts need each other.
-class Assembly {
- public:
-  /// `data`: data_identity of the input.
-  Assembly(const Input& input, const std::string& data, const std::filesystem::path& folder, const Comm& communicator,
-           bool restart)
-      : span_(TimeSpan::of(input.list())) {
-    const Teuchos::ParameterList& list = input.list();
-    method_ = Registry<Method>::create(list.sublist("method"), {list, communicator});
-    scheme_ = Registry<TimeScheme>::create(list.sublist("time").sublist("scheme"), {*method_, span_.step});
-    x_ = VectorView("kiln::run::unknown", local_size(*method_->coordinates()));
-    const std::string identity = identity_of(list, data);
-    if (restart) {
-      const auto [step, solved] =
-          Checkpoint::restore(folder, identity, *method_, *scheme_, x_, span_.last_step, communicator);
-      span_.first_step = step;
-      solved_before_ = solved;
-    } else {
-      method_->initial(x_);
-      scheme_->start(x_, 0.0);
-    }
-    const Observer::Context context{
-        *method_,
-        folder,
-        communicator,
-        span_.first_step,
-        span_.last_step,
-        span_.step,
-        {{"input", input.merged()}, {"method", list.sublist("method").get<std::string>("type")}}};
-    const Teuchos::ParameterList& output = list.sublist("output");
-    for (auto entry = output.begin(); entry != output.end(); ++entry) {
-      const std::string& key = output.name(entry);
-      if (!output.isSublist(key) || key == "checkpoint") continue;
-      observers_.push_back(Registry<Observer>::create(output.sublist(key), context));
-    }
-    if (output.isSublist("checkpoint")) {
-      observers_.push_back(std::make_unique<Checkpoint>(context, *scheme_, identity, solved_before_));
-    }
-  }
-
-  void add(std::unique_ptr<Observer> observer) { observers_.push_back(std::move(observer)); }
-
-  /// Makes the files of the outputs.
-  void begin() {
-    for (const auto& observer : observers_) observer->begin();
-  }
-
-  void march(LoopTotals& totals) {
-    std::vector<StepListener*> listeners;
-    for (const auto& observer : observers_) listeners.push_back(observer.get());
-    run_time_loop(*method_, *scheme_, x_, span_, listeners, totals);
-  }
-
-  void finish(RunReport& report) {
-    for (const auto& observer : observers_) observer->finish(report);
-    method_->report(report.section("method"));
-  }
-
-  const TimeSpan& span() const { return span_; }
-  /// Of the steps that an earlier part of the run took.
-  const SolveTotals& solved_before() const { return solved_before_; }
-  Method& method() { return *method_; }
-
- private:
-  TimeSpan span_;
-  SolveTotals solved_before_;
-  std::unique_ptr<Method> method_;
-  std::unique_ptr<TimeScheme> scheme_;
-  VectorView x_;
-  std::vector<std::unique_ptr<Observer>> observers_;
-};
 
 /// On what a run was made, from which files, and the libraries whose code took part, if any. Collective.
 void report_origins(const nlohmann::json& hashes, RunReport& report, const Communicator& communicator) {
@@ -137,24 +52,6 @@ struct Seconds {
 Seconds elapsed(const Stopwatch& watch, const Communicator& communicator) {
   return {watch.wall_seconds(), watch.cpu_seconds(communicator)};
 }
-
-/// Collects all Teuchos::TimeMonitor regions of a command into one stacked timer.
-class Timers {
- public:
-  explicit Timers(const char* name) : timer_(Teuchos::rcp(new Teuchos::StackedTimer(name))) {
-    Teuchos::TimeMonitor::setStackedTimer(timer_);
-  }
-  ~Timers() { Teuchos::TimeMonitor::setStackedTimer(Teuchos::null); }
-  Timers(const Timers&) = delete;
-  Timers& operator=(const Timers&) = delete;
-  std::string table(const Comm& communicator) const {
-    timer_->stopBaseTimer();
-    return table_of(*timer_, communicator);
-  }
-
- private:
-  Teuchos::RCP<Teuchos::StackedTimer> timer_;
-};
 
 /// Builds with errors of components placed in the input file.
 template <class Build>
@@ -199,34 +96,6 @@ Input read_input(const CommandOptions& options, const Comm& communicator) {
   }
   return input;
 }
-
-/// A folder that goes when its owner goes.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const Communicator& communicator) : communicator_(communicator) {
-    // An unusable TMPDIR throws on all ranks alike.
-    const std::filesystem::path folder = std::filesystem::temp_directory_path();
-    std::string path(4096, '\0');
-    if (communicator.getRank() == 0) {
-      std::string pattern = (folder / "kiln-check-XXXXXX").string();
-      if (mkdtemp(pattern.data()) != nullptr) path.replace(0, pattern.size(), pattern);
-    }
-    Teuchos::broadcast(communicator, 0, static_cast<int>(path.size()), path.data());
-    path_ = path.c_str();
-    if (path_.empty()) throw FileError(folder.string(), "", "no folder can be made in it");
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (communicator_.getRank() == 0) std::filesystem::remove_all(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  const Communicator& communicator_;
-  std::filesystem::path path_;
-};
 
 std::unique_ptr<Trainer> make_trainer(const Input& input, bool quiet, const Comm& communicator) {
   const Teuchos::ParameterList& list = input.list();

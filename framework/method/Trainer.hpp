@@ -23,7 +23,8 @@ class Trainer {
   /// Throws InputError for mistakes that only the model can tell, such as parameters that it does not have: before a
   /// training replaces what an earlier one left. Collective.
   virtual void check() = 0;
-  /// Checks first, where that has not been done. Writes `file` at once at the end: either whole or not at all. Collective.
+  /// Checks first, where that has not been done. Writes `file` at once at the end: either whole or not at all.
+  /// Collective.
   virtual void train(const std::filesystem::path& file, RunReport& report) = 0;
 };
 

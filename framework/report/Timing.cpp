@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_TimeMonitor.hpp>
 #include <ctime>
 #include <fstream>
 #include <sstream>
@@ -56,6 +57,17 @@ std::string table_of(Teuchos::StackedTimer& timer, const Teuchos::RCP<const Comm
   std::ostringstream text;
   timer.report(text, communicator, options);
   return communicator->getRank() == 0 ? text.str() : std::string();
+}
+
+Timers::Timers(const std::string& name) : timer_(Teuchos::rcp(new Teuchos::StackedTimer(name.c_str()))) {
+  Teuchos::TimeMonitor::setStackedTimer(timer_);
+}
+
+Timers::~Timers() { Teuchos::TimeMonitor::setStackedTimer(Teuchos::null); }
+
+std::string Timers::table(const Teuchos::RCP<const Communicator>& communicator) const {
+  timer_->stopBaseTimer();
+  return table_of(*timer_, communicator);
 }
 
 }  // namespace kiln

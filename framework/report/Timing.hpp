@@ -29,6 +29,20 @@ long long peak_memory(const Communicator& communicator);
 /// that does not allow it keeps the old peak.
 void reset_peak_memory();
 
+/// While it lives, collects all Teuchos::TimeMonitor regions into one stacked timer. One at a time.
+class Timers {
+ public:
+  explicit Timers(const std::string& name);
+  ~Timers();
+  Timers(const Timers&) = delete;
+  Timers& operator=(const Timers&) = delete;
+  /// Stops and returns table_of() it. Collective.
+  std::string table(const Teuchos::RCP<const Communicator>& communicator) const;
+
+ private:
+  Teuchos::RCP<Teuchos::StackedTimer> timer_;
+};
+
 /// The timer's table with minimum, mean and maximum over the ranks; on rank 0, empty elsewhere. The timer is stopped
 /// already. Collective.
 std::string table_of(Teuchos::StackedTimer& timer, const Teuchos::RCP<const Communicator>& communicator);
