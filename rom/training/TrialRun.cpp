@@ -126,7 +126,7 @@ TrialErrors trial_run(const std::string& type, const Teuchos::ParameterList& inp
   TrialErrors errors;
   try {
     const LoopTotals totals = run_time_loop(*method, *scheme, x, span, {&queries, &unknowns});
-    errors.iterations_per_step = static_cast<double>(totals.iterations) / std::max(1, totals.steps);
+    errors.iterations_per_step = static_cast<double>(totals.iterations) / std::max(1LL, totals.steps);
     errors.capped_steps = totals.capped_steps;
   } catch (const DivergenceError&) {
     errors.diverged = true;

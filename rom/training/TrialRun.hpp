@@ -41,7 +41,7 @@ struct TrialErrors {
   double worst_query_of_rise = 0.0;  ///< largest |û − u| of these, relative to their largest |u − u_0|
   double field = 0.0;                ///< relative L2 error of u − u_0 over all particles and the moments kept
   double iterations_per_step = 0.0;
-  int capped_steps = 0;
+  long long capped_steps = 0;
   bool diverged = false;
 
   nlohmann::json facts() const;
