@@ -97,7 +97,7 @@ class SchemaTest(KilnTest):
             changes = ["method={type: fom}", "output.probes.tolerance=1 m", "plugins=[]"]
             if "vortex" not in str(path.relative_to(HERE.parent)):
                 changes.append("model.particles={type: lattice, origin: [0, 0, 0], size: [1 mm, 0.5 mm, 0.5 mm], "
-                               "count: [11, 6, 6], placement: cells}")
+                               "count: [12, 8, 8], placement: cells}")
             outcome = self.kiln("check", path, *(word for change in changes for word in ("--set", change)))
             self.assertEqual((outcome.status, outcome.stderr), (0, ""), path)
             self.assertEqual(self.problems(loaded(outcome.stdout)), [], path)

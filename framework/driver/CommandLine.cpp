@@ -22,7 +22,6 @@
 #include "framework/driver/StudySpecification.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/Compare.hpp"
-#include "framework/files/Json.hpp"
 #include "framework/files/StandardOutput.hpp"
 #include "framework/files/Together.hpp"
 #include "framework/plugin/Plugins.hpp"
@@ -246,7 +245,7 @@ class Commands {
         throw InputError("", fmt::format("there is no kind of file '{}'", kind_), "input or study",
                          nearest(kind_, {"input", "study"}));
       }
-      return say(json_text(schema_of(file->specification(), fmt::format("Kiln: {}", file->title)), 1) + "\n");
+      return say(schema_of(file->specification(), fmt::format("Kiln: {}", file->title)).dump(1) + "\n");
     });
     added->add_option("KIND", kind_, "'input' or 'study'")->capture_default_str();
   }

@@ -267,7 +267,7 @@ void train(const Input& input, const CommandOptions& options, const Comm& commun
 void build(const Input& input, bool trains, const Comm& communicator) {
   const TemporaryFolder folder(*communicator);
   located(input, [&] {
-    if (trains || input.list().isSublist("reduction")) make_trainer(input, true, communicator)->check();
+    if (trains) make_trainer(input, true, communicator)->check();
     if (input.list().isSublist("queries")) {
       QueryRun(input.list(), communicator);
     } else {
@@ -279,7 +279,7 @@ void build(const Input& input, bool trains, const Comm& communicator) {
 
 void check(const CommandOptions& options, const Comm& communicator) {
   const Input input = read_input(options, communicator);
-  build(input, false, communicator);
+  build(input, input.list().isSublist("reduction"), communicator);
   print(*communicator, input.merged());
 }
 

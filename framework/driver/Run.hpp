@@ -30,8 +30,8 @@ void check(const CommandOptions& options, const Teuchos::RCP<const Communicator>
 void train(const CommandOptions& options, const Teuchos::RCP<const Communicator>& communicator);
 void train(const Input& input, const CommandOptions& options, const Teuchos::RCP<const Communicator>& communicator);
 
-/// Builds everything a run of the input needs, in a temporary folder, and its trainer if it has one and `trains`:
-/// throws what `kiln run` or `kiln train` would find wrong before the first step. Collective.
+/// Builds everything a run of the input needs, in a temporary folder, and its trainer if it `trains`: throws what `kiln
+/// run` or `kiln train` would find wrong before the first step. Collective.
 void build(const Input& input, bool trains, const Teuchos::RCP<const Communicator>& communicator);
 
 }  // namespace kiln

@@ -266,6 +266,7 @@ void FullOrder::restore(const hdf5::Group& group) {
     refresh_jacobian(x, group.finite_real("jacobian_time"));
   }
   age_ = age;
+  resumed_ = true;
 }
 
 void FullOrder::report(nlohmann::json& section) const {

@@ -53,7 +53,10 @@ class FullOrder : public Method {
 
   void save(hdf5::Group& group) const override;
   void restore(const hdf5::Group& group) override;
-  std::vector<std::string> warnings() const override { return model_->warnings(); }
+  /// The model's; none of a run that was continued, of which it has seen the last part only.
+  std::vector<std::string> warnings() const override {
+    return resumed_ ? std::vector<std::string>{} : model_->warnings();
+  }
   void report(nlohmann::json& section) const override;
 
   const std::shared_ptr<Model>& model() const { return model_; }
@@ -86,6 +89,7 @@ class FullOrder : public Method {
 
   VectorView frozen_x_;  ///< where ∂f/∂u was taken
   double frozen_time_ = 0.0;
+  bool resumed_ = false;
   int age_ = -1;  ///< steps since then; −1: nowhere yet
   int jacobian_evaluations_ = 0;
   long long linear_iterations_ = 0;

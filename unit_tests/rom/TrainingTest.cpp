@@ -153,7 +153,9 @@ TEST(Training, WritesASelfContainedFile) {
   EXPECT_EQ(mesh.shape("gappy_operator"), (std::vector<std::size_t>{12, 24}));
   EXPECT_GT(mesh.real("sigma_min"), 0.0);
   const hdf5::Group particles = file.group("particles");
-  EXPECT_EQ(particles.integers("queries").values, (std::vector<long long>{29, 59}));
+  const Questions questions = Questions::read(particles);
+  EXPECT_EQ(questions.particles(), (std::vector<GlobalIndex>{29, 59}));
+  EXPECT_DOUBLE_EQ(questions.spacing, 1.0 / values.count);
   // The basis rows at the particles held are those of the full basis.
   const std::vector<long long> held = particles.integers("ids").values;
   const hdf5::Array<double> all = window.group("basis").reals("modes"), some = particles.reals("modes");
@@ -233,7 +235,7 @@ TEST(Gnat, HoldsEachSourceAndQueriedParticleOnce) {
   const hdf5::File file = hdf5::File::read(values.folder + "/reduction.h5", world());
   const hdf5::Group window = file.group("windows").group("0");
   std::vector<long long> ids = window.group("sample_mesh").integers("sources").values;
-  for (const long long query : file.group("particles").integers("queries").values) ids.push_back(query);
+  for (const GlobalIndex query : Questions::read(file.group("particles")).nearest) ids.push_back(query);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   EXPECT_EQ(gnat->particles()->getGlobalNumElements(), ids.size());

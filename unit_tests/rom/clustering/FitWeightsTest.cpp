@@ -38,7 +38,7 @@ struct SampledChain {
 
   SourceClusters learn(const LearntStates& states) const {
     Teuchos::ParameterList block("reduction.clustering");
-    block.set("type", std::string("among samples")).set("sources", 2).set("ridge", 0.005);
+    block.set("type", std::string("among samples")).set("sources", 1).set("ridge", 0.005);
     return learn_clusters(block, *model, reference, windows, states).clusters;
   }
 };
