@@ -155,7 +155,7 @@ TEST(Training, WritesASelfContainedFile) {
   const hdf5::Group particles = file.group("particles");
   const Questions questions = Questions::read(particles);
   EXPECT_EQ(questions.particles(), (std::vector<GlobalIndex>{29, 59}));
-  EXPECT_DOUBLE_EQ(questions.spacing, 1.0 / values.count);
+  EXPECT_NEAR(questions.spacing, 1.0 / values.count, 1e-15);
   // The basis rows at the particles held are those of the full basis.
   const std::vector<long long> held = particles.integers("ids").values;
   const hdf5::Array<double> all = window.group("basis").reals("modes"), some = particles.reals("modes");
