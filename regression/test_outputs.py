@@ -164,6 +164,7 @@ class RunFilesTest(KilnTest):
         self.told(outcome, [text])
         report = json.loads((self.folder / "capped/fom/report.json").read_text())
         self.assertEqual(report["solve"]["capped_steps"], 40)
+        self.assertGreater(report["solve"]["most_left"], 1e-12)
         self.assertTrue(report["run"]["warnings"][0].startswith(text))
         self.assertIn(text, (self.folder / "capped/fom/report.txt").read_text())
         outcome = self.kiln("train", SMALL, *words, "--set", "output.directory=capped", "--quiet")

@@ -64,6 +64,7 @@ void Checkpoint::observe(const Moment& moment) {
     checkpoint.attribute("residuals", solved_.residuals);
     checkpoint.attribute("iterations", solved_.iterations);
     checkpoint.attribute("capped_steps", solved_.capped_steps);
+    checkpoint.attribute("most_left", solved_.most_left);
     save_unknown(checkpoint, "unknown", *method_.coordinates(), moment.x);
     hdf5::Group scheme = checkpoint.create_group("scheme");
     scheme_.save(scheme);
@@ -108,7 +109,7 @@ Checkpoint::Resumed Checkpoint::restore(const std::filesystem::path& folder, con
   constexpr long long any = std::numeric_limits<long long>::max();
   return {step,
           {step, checkpoint.integer("residuals", 0, any), checkpoint.integer("iterations", 0, any),
-           checkpoint.integer("capped_steps", 0, step)}};
+           checkpoint.integer("capped_steps", 0, step), checkpoint.finite_real("most_left")}};
 }
 
 }  // namespace kiln

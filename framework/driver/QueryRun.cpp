@@ -224,6 +224,7 @@ SolveTotals QueryRun::totals() const {
   all.residuals = sums[1];
   all.iterations = sums[2];
   all.capped_steps = sums[3];
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_MAX, 1, &mine.most_left, &all.most_left);
   return all;
 }
 

@@ -11,7 +11,9 @@ void SolveTotals::add(const SolveReport& solve) {
   ++steps;
   residuals += solve.residuals;
   iterations += solve.iterations;
-  capped_steps += solve.converged ? 0 : 1;
+  if (solve.converged) return;
+  ++capped_steps;
+  if (solve.first_norm > 0.0) most_left = std::max(most_left, solve.last_norm / solve.first_norm);
 }
 
 SolveTotals& SolveTotals::operator+=(const SolveTotals& other) {
@@ -19,6 +21,7 @@ SolveTotals& SolveTotals::operator+=(const SolveTotals& other) {
   residuals += other.residuals;
   iterations += other.iterations;
   capped_steps += other.capped_steps;
+  most_left = std::max(most_left, other.most_left);
   return *this;
 }
 
@@ -29,15 +32,17 @@ nlohmann::json SolveTotals::facts() const {
           {"residuals_per_step", static_cast<double>(residuals) / each},
           {"iterations", iterations},
           {"iterations_per_step", static_cast<double>(iterations) / each},
-          {"capped_steps", capped_steps}};
+          {"capped_steps", capped_steps},
+          {"most_left", most_left}};
 }
 
 std::vector<std::string> SolveTotals::warnings() const {
   if (capped_steps == 0) return {};
   return {
-      fmt::format("{} of {} steps were left unsolved at the cap of iterations, so that their answers are off: take "
-                  "more time.newton.iterations, shorter steps, or another time.newton.jacobian or refresh",
-                  capped_steps, steps)};
+      fmt::format("{} of {} steps were left unsolved at the cap of iterations, with up to {:.2g} % of their first "
+                  "residual: more time.newton.iterations, shorter steps, or another time.newton.jacobian or refresh "
+                  "may solve them",
+                  capped_steps, steps, 100.0 * most_left)};
 }
 
 }  // namespace kiln

@@ -14,6 +14,7 @@ struct SolveTotals {
   long long residuals = 0;
   long long iterations = 0;
   long long capped_steps = 0;  ///< steps whose iteration cap came before convergence
+  double most_left = 0.0;      ///< the largest of their last residuals, as a fraction of the step's first
 
   void add(const SolveReport& solve);
   SolveTotals& operator+=(const SolveTotals& other);
