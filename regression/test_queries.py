@@ -1,6 +1,7 @@
 """Many parameter points in one run: the answers are those of single runs, whatever the method and the number of ranks."""
 
 import csv
+import json
 
 import h5py
 import numpy as np
@@ -117,6 +118,13 @@ class QueriesTest(KilnTest):
         report = self.kiln("report", folder).stdout
         self.assertIn("1 of 3 points diverged", report)
         self.assertIn("step 1", report)
+
+    def test_a_point_that_heats_nothing_is_told_whichever_rank_ran_it(self):
+        for ranks in (1, 2):
+            folder = self.answers("fom", "queries.points={heat_source.power: [20 W, 0 W, 0 W, 20 W]}", ranks=ranks,
+                                  warnings=["point 1: the heat source has heated no particle"])
+            warnings = json.loads((folder / "report.json").read_text())["run"]["warnings"]
+            self.assertTrue(warnings[0].endswith("; and 1 more point"), warnings)
 
     def test_mistakes_are_told_with_their_places(self):
         for override, words in (

@@ -146,7 +146,7 @@ class ReductionTest(KilnTest):
         self.solve("run", points, queries, "method.type=gnat", into="tried",
                    warnings=["point 0: the errors that the training stated are not of these parameters"])
         report = json.loads((self.folder / "tried/gnat/report.json").read_text())
-        self.assertTrue(report["run"]["warnings"][0].endswith("; and 1 more points"), report["run"]["warnings"])
+        self.assertTrue(report["run"]["warnings"][0].endswith("; and 1 more point"), report["run"]["warnings"])
         self.assertIn("reduction_seal", report["method"])
 
     def test_a_probe_is_never_moved_to_another_particle(self):

@@ -1,6 +1,7 @@
 #include "framework/driver/QueryRun.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
@@ -133,6 +134,10 @@ void QueryRun::answer_together(std::size_t first, std::size_t count) {
   }
   std::copy(block_->outcomes().begin(), block_->outcomes().end(),
             answers_.outcomes.begin() + static_cast<std::ptrdiff_t>(first));
+  for (std::size_t point = answers_.first + first; point < answers_.first + first + count; ++point) {
+    answers_.points.set(point, method_->parameters());
+    doubt(point);
+  }
 }
 
 void QueryRun::answer_alone(std::size_t point) {
@@ -157,6 +162,13 @@ void QueryRun::answer_alone(std::size_t point) {
   } catch (const DivergenceError& error) {
     outcome.divergence = error.what();
   }
+  doubt(answers_.first + point);
+}
+
+void QueryRun::doubt(std::size_t point) {
+  const std::vector<std::string> warnings = method_->warnings();
+  if (warnings.empty()) return;
+  if (doubtful_++ == 0) first_doubt_ = fmt::format("point {}: {}", point, fmt::join(warnings, "; "));
 }
 
 const QueryAnswers& QueryRun::answer() {
@@ -228,17 +240,16 @@ SolveTotals QueryRun::totals() const {
   return all;
 }
 
-std::vector<std::string> QueryRun::warnings() {
+std::vector<std::string> QueryRun::warnings() const {
   std::vector<std::string> warnings = totals().warnings();
-  std::size_t count = 0;
-  std::string first;
-  for (std::size_t point = 0; point < answers_.points.count(); ++point) {
-    answers_.points.set(point, method_->parameters());
-    for (const std::string& warning : method_->warnings()) {
-      if (count++ == 0) first = fmt::format("point {}: {}", point, warning);
-    }
+  long long points = 0;
+  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 1, &doubtful_, &points);
+  for (const std::string& first : gathered(first_doubt_, *communicator_)) {
+    if (first.empty()) continue;
+    warnings.push_back(first);
+    if (points > 1) warnings.back() += fmt::format("; and {} more point{}", points - 1, points == 2 ? "" : "s");
+    break;
   }
-  if (count > 0) warnings.push_back(count == 1 ? first : fmt::format("{}; and {} more points", first, count - 1));
   return warnings;
 }
 

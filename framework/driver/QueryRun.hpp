@@ -27,7 +27,7 @@ class QueryRun {
   /// Adds points, divergences and sums over all points. Collective.
   void report(RunReport& report) const;
   /// What is to be known before the answers are believed, a sentence each. Collective.
-  std::vector<std::string> warnings();
+  std::vector<std::string> warnings() const;
   /// How many of all points diverged. Collective.
   std::size_t diverged() const;
 
@@ -35,6 +35,8 @@ class QueryRun {
   void make_block(std::size_t points);
   void answer_together(std::size_t first, std::size_t count);
   void answer_alone(std::size_t point);
+  /// Keeps what the method, at this point's parameters, has to say of its answers.
+  void doubt(std::size_t point);
   /// Over all points. Collective.
   SolveTotals totals() const;
   bool is_recorded(int step) const { return step % every_ == 0 || step == span_.last_step; }
@@ -51,6 +53,8 @@ class QueryRun {
   std::unique_ptr<PointBlock> block_;  ///< of points that advance together; serves one block of points after the other
   std::size_t block_size_ = 0;
   QueryAnswers answers_;
+  long long doubtful_ = 0;   ///< this rank's points of whose answers the method has something to say
+  std::string first_doubt_;  ///< what it says of the first of these
 };
 
 }  // namespace kiln

@@ -32,7 +32,10 @@ class FullOrder : public Method {
   Teuchos::RCP<const Map> coordinates() const override { return halo_.rows(); }
   LocalIndex row_size() const override { return halo_.row_size(); }
   void initial(VectorView x) const override;
-  void forget() override { age_ = -1; }
+  void forget() override {
+    age_ = -1;
+    model_->forget();
+  }
   bool begin_step(double) override { return false; }
 
   void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) override;

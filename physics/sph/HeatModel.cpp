@@ -5,6 +5,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/base/Error.hpp"
 #include "framework/base/Loop.hpp"
@@ -197,6 +198,12 @@ std::optional<double> HeatModel::mean_absorbed() const {
   // A rank without heated rows asks for nothing.
   Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &absorbed_times_, &times);
   return times == 0 ? std::nullopt : std::optional<double>(total / static_cast<double>(times));
+}
+
+void HeatModel::forget() {
+  absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
+  absorbed_sum_ = 0.0;
+  absorbed_times_ = 0;
 }
 
 std::vector<std::string> HeatModel::warnings() const {

@@ -58,9 +58,11 @@ class HeatModel final : public Model, public PairwiseModel {
   /// eight points.
   std::unique_ptr<PointRates> at_points(const ParameterPoints& points) override;
 
-  /// `pairs`: directed pairs of neighbours, `neighbours_per_particle`, and `mean_absorbed_watt` over the times so far.
+  /// `pairs`: directed pairs of neighbours, `neighbours_per_particle`, and `mean_absorbed_watt` over the times of the
+  /// run so far.
   std::vector<std::pair<std::string, double>> facts() const override;
   /// Where a source that heats has heated no particle so far.
+  void forget() override;
   std::vector<std::string> warnings() const override;
 
   /// Particles, pairs and weights of this rank.
@@ -120,7 +122,7 @@ class HeatModel final : public Model, public PairwiseModel {
   mutable LastParameters absorbed_of_;
   mutable double absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
   bool adds_absorbed_ = false;            ///< the full model: of samples it says little and costs as much as their sums
-  mutable double absorbed_sum_ = 0.0;     ///< W: of this rank's rows, over the times so far
+  mutable double absorbed_sum_ = 0.0;     ///< W: of this rank's rows, over the times of the run so far
   mutable long long absorbed_times_ = 0;  ///< how many these are
   ThermalStateView states_;               ///< of the sources and, last, nobody
   mutable LastState states_of_;           ///< whose states_ they are

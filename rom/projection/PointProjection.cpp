@@ -111,26 +111,27 @@ void PointProjection::reduce_residual(const StepResidual& residual, double gamma
     }
   });
   test_.multiply_transposed(residual_, iterates_, g_);
-  over_points(norms_.size(), iterates_, [&](std::size_t point, auto width) {
+  take_norms(g_, norms_);
+}
+
+void PointProjection::take_norms(ConstMatrixView arrays, std::vector<double>& norms) const {
+  over_points(norms.size(), iterates_, [&](std::size_t point, auto width) {
     using Width = decltype(width);
     typename Width::Numbers sum{};
-    for (std::size_t k = 0; k < size_; ++k) sum += Width::at(&g_(point, k)) * Width::at(&g_(point, k));
-    Width::store(&norms_[point], sum);
+    for (std::size_t i = 0; i < arrays.extent(1); ++i)
+      sum += Width::at(&arrays(point, i)) * Width::at(&arrays(point, i));
+    Width::store(&norms[point], sum);
   });
-  for (std::size_t point = 0; point < norms_.size(); ++point) {
-    if (iterates_[point] != 0) norms_[point] = std::sqrt(norms_[point]);
+  for (std::size_t point = 0; point < norms.size(); ++point) {
+    if (iterates_[point] != 0) norms[point] = std::sqrt(norms[point]);
   }
 }
 
 void PointProjection::set_goals(ConstMatrixView history) {
-  over_points(goals_.size(), iterates_, [&](std::size_t point, auto width) {
-    using Width = decltype(width);
-    typename Width::Numbers sum{};
-    for (std::size_t i = 0; i < rows_; ++i) sum += Width::at(&history(point, i)) * Width::at(&history(point, i));
-    Width::store(&goals_[point], sum);
-  });
+  take_norms(history, goals_);
   for (std::size_t point = 0; point < goals_.size(); ++point) {
-    goals_[point] = Projection::goal(settings_.tolerance, norms_[point], test_norms_[point], std::sqrt(goals_[point]));
+    if (iterates_[point] == 0) continue;
+    goals_[point] = Projection::goal(settings_.tolerance, norms_[point], test_norms_[point], goals_[point]);
   }
 }
 
