@@ -19,7 +19,8 @@ Teuchos::ParameterList model_list() {
   list.set("type", std::string("sph heat")).set("smoothing_length", 1.5).set("boundary", std::string("as printed"));
   list.sublist("kernel").setName("model.kernel").set("type", std::string("cubic spline"));
   list.sublist("material").setName("model.material").set("type", std::string("316L"));
-  list.sublist("table").setName("model.table");
+  const TableRange table;
+  list.sublist("table").setName("model.table").set("from", table.from).set("to", table.to).set("step", table.step);
   list.set("initial_temperature", 293.15);
   Teuchos::ParameterList& beam = list.sublist("heat_source").setName("model.heat_source");
   beam.set("type", std::string("gaussian beam")).set("power", 40.0).set("width", 50e-6);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/base/Memory.hpp"
 #include "framework/base/StopRequest.hpp"
@@ -27,21 +28,6 @@ const Teuchos::ParameterList& probe_block(const Teuchos::ParameterList& input) {
     throw InputError("output", "there are no probes, whose histories answer the queries", "a block output.probes");
   }
   return output.sublist("probes");
-}
-
-/// Texts of all ranks, one after the other, on each. Collective.
-std::vector<std::string> gathered(const std::string& text, const Communicator& communicator) {
-  const int ranks = communicator.getSize(), length = static_cast<int>(text.size());
-  std::vector<int> lengths(ranks);
-  Teuchos::gatherAll(communicator, 1, &length, ranks, lengths.data());
-  const int widest = std::max(1, *std::max_element(lengths.begin(), lengths.end()));
-  std::string padded = text, all(static_cast<std::size_t>(widest) * ranks, '\0');
-  padded.resize(widest);
-  Teuchos::gatherAll(communicator, widest, padded.data(), widest * ranks, all.data());
-  std::vector<std::string> texts;
-  for (int rank = 0; rank < ranks; ++rank)
-    texts.push_back(all.substr(static_cast<std::size_t>(widest) * rank, lengths[rank]));
-  return texts;
 }
 
 /// Keeps what a run of one point shows.
@@ -191,10 +177,10 @@ const QueryAnswers& QueryRun::answer() {
   } catch (const NotOffered& error) {
     refused = error.what();
   }
-  for (const std::string& name : gathered(stopped, *communicator_)) {
+  for (const std::string& name : gathered(*communicator_, stopped)) {
     if (!name.empty()) throw Stopped(name + " came: stopped before all points were answered; no answer is kept");
   }
-  for (const std::string& text : gathered(refused, *communicator_)) {
+  for (const std::string& text : gathered(*communicator_, refused)) {
     if (!text.empty()) throw InputError("queries", text);
   }
   return answers_;
@@ -215,7 +201,7 @@ void QueryRun::report(RunReport& report) const {
     if (!outcome.divergence.empty()) marked.push_back({{"point", answers_.first + i}, {"what", outcome.divergence}});
   }
   nlohmann::json divergences = nlohmann::json::array();
-  for (const std::string& text : gathered(json_text(marked), *communicator_)) {
+  for (const std::string& text : gathered(*communicator_, json_text(marked))) {
     for (const nlohmann::json& one : nlohmann::json::parse(text)) divergences.push_back(one);
   }
   report.section("queries") = {{"points", answers_.points.count()},
@@ -244,7 +230,7 @@ std::vector<std::string> QueryRun::warnings() const {
   std::vector<std::string> warnings = totals().warnings();
   long long points = 0;
   Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 1, &doubtful_, &points);
-  for (const std::string& first : gathered(first_doubt_, *communicator_)) {
+  for (const std::string& first : gathered(*communicator_, first_doubt_)) {
     if (first.empty()) continue;
     warnings.push_back(first);
     if (points > 1) warnings.back() += fmt::format("; and {} more point{}", points - 1, points == 2 ? "" : "s");

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Hdf5Node.hpp"
@@ -69,15 +69,6 @@ void check_block(const Node& node, const Dataset& dataset, const std::string& na
                                                                  fmt::join(start, ", "))}));
 }
 
-/// In pieces that MPI's int counts can tell.
-template <class T>
-void broadcast_values(const Communicator& communicator, std::vector<T>& values) {
-  constexpr std::size_t piece = std::size_t{1} << 27;
-  for (std::size_t at = 0; at < values.size(); at += piece) {
-    Teuchos::broadcast(communicator, 0, static_cast<int>(std::min(piece, values.size() - at)), values.data() + at);
-  }
-}
-
 template <class T>
 void write_replicated(const Node& node, const std::string& name, hid_t type, const Array<T>& array) {
   if (array.values.size() != product(array.shape)) {
@@ -103,7 +94,7 @@ Array<T> read_replicated(const Node& node, const std::string& name, H5T_class_t 
     read = H5Dread(dataset.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) >= 0;
   }
   node.require(read, name, "read");
-  broadcast_values(node.communicator(), array.values);
+  broadcast(node.communicator(), 0, array.values.data(), array.values.size());
   return array;
 }
 

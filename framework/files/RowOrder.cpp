@@ -1,14 +1,13 @@
 #include "framework/files/RowOrder.hpp"
 
-#include <mpi.h>
-
-#include <Teuchos_DefaultMpiComm.hpp>
 #include <Tpetra_Import.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+
+#include "framework/base/Collectives.hpp"
 
 namespace kiln {
 namespace {
@@ -22,18 +21,7 @@ std::vector<long long> own_ids(const Map& map) {
 
 /// All ids of a small set on every rank, sorted.
 std::vector<long long> gathered_ids(const Map& map) {
-  std::vector<long long> ids = own_ids(map);
-  if (const auto* comm = dynamic_cast<const Teuchos::MpiComm<int>*>(map.getComm().get())) {
-    const MPI_Comm mpi = (*comm->getRawMpiComm())();
-    const int mine = static_cast<int>(ids.size());
-    std::vector<int> counts(static_cast<std::size_t>(comm->getSize()));
-    MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, mpi);
-    std::vector<int> starts(counts.size());
-    std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
-    std::vector<long long> all(static_cast<std::size_t>(starts.back() + counts.back()));
-    MPI_Allgatherv(ids.data(), mine, MPI_LONG_LONG, all.data(), counts.data(), starts.data(), MPI_LONG_LONG, mpi);
-    ids = std::move(all);
-  }
+  std::vector<long long> ids = concatenated(*map.getComm(), own_ids(map));
   std::sort(ids.begin(), ids.end());
   return ids;
 }

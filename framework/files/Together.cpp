@@ -1,24 +1,16 @@
 #include "framework/files/Together.hpp"
 
 #include <Teuchos_CommHelpers.hpp>
-#include <algorithm>
 #include <cstring>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 
 namespace kiln {
 namespace {
 
 std::string broadcast_from(const Communicator& communicator, int root, std::string text) {
-  long long size = static_cast<long long>(text.size());
-  Teuchos::broadcast(communicator, root, 1, &size);
-  text.resize(static_cast<std::size_t>(size));
-  // MPI counts in int.
-  constexpr std::size_t piece = std::size_t{1} << 30;
-  for (std::size_t begin = 0; begin < text.size(); begin += piece) {
-    const auto count = static_cast<int>(std::min(piece, text.size() - begin));
-    Teuchos::broadcast(communicator, root, count, text.data() + begin);
-  }
+  broadcast(communicator, root, text);
   return text;
 }
 

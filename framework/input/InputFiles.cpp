@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Hash.hpp"
 
 namespace kiln {
@@ -76,16 +76,12 @@ void InputFiles::send(const Teuchos::Comm<int>& communicator) const {
   for (const auto& [path, file] : contents_) answers["contents"][path] = {file.text, file.trouble};
   std::string message;
   nlohmann::json::to_cbor(answers, message);
-  auto size = static_cast<int>(message.size());
-  Teuchos::broadcast(communicator, 0, Teuchos::outArg(size));
-  Teuchos::broadcast(communicator, 0, size, message.data());
+  broadcast(communicator, 0, message);
 }
 
 InputFiles InputFiles::receive(const Teuchos::Comm<int>& communicator) {
-  int size = 0;
-  Teuchos::broadcast(communicator, 0, Teuchos::outArg(size));
-  std::string message(static_cast<std::size_t>(size), '\0');
-  Teuchos::broadcast(communicator, 0, size, message.data());
+  std::string message;
+  broadcast(communicator, 0, message);
   return InputFiles(message);
 }
 

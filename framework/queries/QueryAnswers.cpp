@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/files/AtomicFile.hpp"
 #include "framework/files/CsvLog.hpp"
 #include "framework/files/Hdf5.hpp"
@@ -105,28 +105,16 @@ std::vector<double> row_of(const QueryAnswers& answers, std::size_t own_point) {
   return row;
 }
 
-/// The table's text, complete on rank 0. Collective.
+/// The table's text. Collective.
 std::string table(const QueryAnswers& answers, const Communicator& communicator) {
   std::vector<std::string> names = columns(answers);
   for (std::string& name : names) name = csv_cell(name);
+  std::string own;
+  for (std::size_t point = 0; point < answers.outcomes.size(); ++point) {
+    own += fmt::format("{}\n", fmt::join(row_of(answers, point), ","));
+  }
   std::string text = fmt::format("{}\n", fmt::join(names, ","));
-  // Each row is on one rank and 0 on the others.
-  std::vector<double> mine(answers.points.count() * names.size()), all(mine.size());
-  for (std::size_t i = 0; i < answers.outcomes.size(); ++i) {
-    const std::vector<double> row = row_of(answers, i);
-    std::copy(row.begin(), row.end(), mine.begin() + static_cast<std::ptrdiff_t>((answers.first + i) * names.size()));
-  }
-  // MPI counts in int.
-  constexpr std::size_t piece = std::size_t{1} << 28;
-  for (std::size_t begin = 0; begin < mine.size(); begin += piece) {
-    const auto count = static_cast<int>(std::min(piece, mine.size() - begin));
-    Teuchos::reduce(mine.data() + begin, all.data() + begin, count, Teuchos::REDUCE_SUM, 0, communicator);
-  }
-  if (communicator.getRank() != 0) return {};
-  for (std::size_t point = 0; point < answers.points.count(); ++point) {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(point * names.size());
-    text += fmt::format("{}\n", fmt::join(begin, begin + static_cast<std::ptrdiff_t>(names.size()), ","));
-  }
+  for (const std::string& rows : gathered(communicator, own)) text += rows;
   return text;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Teuchos_CommHelpers.hpp>
-#include <algorithm>
 #include <vector>
 
 #include "physics/sph/HeatDomain.hpp"
@@ -32,28 +30,6 @@ struct DomainParts {
 
 /// The domain that these pieces make. Collective.
 HeatDomain assembled(const DomainParts& parts, const Teuchos::RCP<const Communicator>& communicator);
-
-/// Local arrays of all ranks, one after the other, on each rank. Collective.
-template <class T>
-std::vector<T> gathered(const std::vector<T>& local, const Communicator& communicator) {
-  const int ranks = communicator.getSize();
-  std::vector<int> counts(ranks);
-  const int count = static_cast<int>(local.size());
-  Teuchos::gatherAll(communicator, 1, &count, ranks, counts.data());
-  const int widest = *std::max_element(counts.begin(), counts.end());
-  std::vector<T> padded(local);
-  padded.resize(widest);
-  std::vector<T> received(static_cast<std::size_t>(widest) * ranks);
-  if (widest > 0) {
-    Teuchos::gatherAll(communicator, widest, padded.data(), widest * ranks, received.data());
-  }
-  std::vector<T> all;
-  for (int rank = 0; rank < ranks; ++rank) {
-    const auto first = received.begin() + static_cast<std::ptrdiff_t>(widest) * rank;
-    all.insert(all.end(), first, first + counts[rank]);
-  }
-  return all;
-}
 
 /// The order in which ids ascend.
 std::vector<std::size_t> ascending(const std::vector<GlobalIndex>& ids);

@@ -37,7 +37,7 @@ class GaussianBeam final : public HeatSource {
   GaussianBeam(const Teuchos::ParameterList& list, const Context&)
       : power_(list.get<double>("power")),
         width_(list.get<double>("width")),
-        printed_(list.isParameter("normalisation") && list.get<std::string>("normalisation") == "printed") {
+        printed_(list.get<std::string>("normalisation") == "printed") {
     const auto start = list.get<Teuchos::Array<double>>("start");
     const auto velocity = list.get<Teuchos::Array<double>>("velocity");
     for (int axis = 0; axis < 2; ++axis) {

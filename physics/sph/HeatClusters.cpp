@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "physics/sph/DomainParts.hpp"
 #include "physics/sph/HeatModel.hpp"
@@ -124,10 +125,10 @@ PairWeights HeatModel::pair_weights(const std::vector<GlobalIndex>& rows) const 
     }
   }
   const Communicator& communicator = *domain_.rows->getComm();
-  const auto ids = gathered(local.rows, communicator);
-  const auto counts = gathered(local_counts, communicator);
-  const auto sources = gathered(local_sources, communicator);
-  const auto weights = gathered(local_weights, communicator);
+  const auto ids = concatenated(communicator, local.rows);
+  const auto counts = concatenated(communicator, local_counts);
+  const auto sources = concatenated(communicator, local_sources);
+  const auto weights = concatenated(communicator, local_weights);
   std::vector<std::ptrdiff_t> starts{0};
   for (const GlobalIndex count : counts) starts.push_back(starts.back() + static_cast<std::ptrdiff_t>(count));
 

@@ -43,7 +43,7 @@ HeatDomain domain_of(const Teuchos::ParameterList& list, const Model::Context& c
   const ParticleCloud cloud = Registry<Particles>::create(list.sublist("particles"), {context.communicator})->cloud();
   const double smoothing_length = list.get<double>("smoothing_length") * cloud.spacing;
   const auto kernel = Registry<Kernel>::create(list.sublist("kernel"), {smoothing_length});
-  const bool mirrored = list.isParameter("boundary") && list.get<std::string>("boundary") == "mirrored";
+  const bool mirrored = list.get<std::string>("boundary") == "mirrored";
   const double density = table.at(initial_temperature(list)).density;
   return whole_domain(cloud, {*kernel, 2.0 * smoothing_length, mirrored, density, list.name()}, context.communicator);
 }

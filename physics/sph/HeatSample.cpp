@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "physics/sph/DomainParts.hpp"
@@ -109,11 +110,11 @@ void save_domain(const HeatDomain& domain, hdf5::Group& group) {
     local_neighbours.push_back(local.sources[local.neighbours(pair)]);
   }
   const std::vector<double> local_weights(local.weights.data(), local.weights.data() + local.weights.extent(0));
-  const auto rows = gathered(local.rows, communicator);
-  const auto areas = gathered(local_areas, communicator);
-  const auto counts = gathered(local_counts, communicator);
-  const auto neighbours = gathered(local_neighbours, communicator);
-  const auto weights = gathered(local_weights, communicator);
+  const auto rows = concatenated(communicator, local.rows);
+  const auto areas = concatenated(communicator, local_areas);
+  const auto counts = concatenated(communicator, local_counts);
+  const auto neighbours = concatenated(communicator, local_neighbours);
+  const auto weights = concatenated(communicator, local_weights);
   const std::vector<std::size_t> order = ascending(rows);
 
   std::vector<std::size_t> starts(rows.size());
@@ -143,9 +144,9 @@ void save_domain(const HeatDomain& domain, hdf5::Group& group) {
     local_places.insert(local_places.end(), {local.positions(s, 0), local.positions(s, 1), local.positions(s, 2)});
   }
   const std::vector<double> local_masses(local.masses.data(), local.masses.data() + local.masses.extent(0));
-  const auto sources = gathered(local.sources, communicator);
-  const auto places = gathered(local_places, communicator);
-  const auto masses = gathered(local_masses, communicator);
+  const auto sources = concatenated(communicator, local.sources);
+  const auto places = concatenated(communicator, local_places);
+  const auto masses = concatenated(communicator, local_masses);
   std::vector<std::size_t> source_order = ascending(sources);
   // Halos repeat what a neighbour rank holds.
   source_order.erase(std::unique(source_order.begin(), source_order.end(),

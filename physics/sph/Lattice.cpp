@@ -40,8 +40,7 @@ class Lattice final : public Particles {
     return specification;
   }
 
-  Lattice(const Teuchos::ParameterList& list, const Context&)
-      : cells_(list.isParameter("placement") && list.get<std::string>("placement") == "cells") {
+  Lattice(const Teuchos::ParameterList& list, const Context&) : cells_(list.get<std::string>("placement") == "cells") {
     const auto origin = list.get<Teuchos::Array<double>>("origin");
     const auto size = list.get<Teuchos::Array<double>>("size");
     const auto count = list.get<Teuchos::Array<int>>("count");

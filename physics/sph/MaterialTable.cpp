@@ -44,13 +44,8 @@ std::vector<double> tabulated(const Material& material, double from, double to, 
 }  // namespace
 
 TableRange TableRange::of(const Teuchos::ParameterList& model) {
-  TableRange range;
-  if (!model.isSublist("table")) return range;
   const Teuchos::ParameterList& table = model.sublist("table");
-  for (const auto& [key, value] : {std::pair{"from", &range.from}, {"to", &range.to}, {"step", &range.step}}) {
-    if (table.isParameter(key)) *value = table.get<double>(key);
-  }
-  return range;
+  return {table.get<double>("from"), table.get<double>("to"), table.get<double>("step")};
 }
 
 double TableRange::intervals() const { return std::ceil((to - from) / step * (1.0 - 1e-12)); }

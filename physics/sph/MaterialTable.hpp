@@ -131,7 +131,7 @@ class MaterialLookup {
 /// The block `table` of a model: at which temperatures (K) a material's properties are tabulated.
 struct TableRange {
   double from = 200.0, to = 6000.0, step = 1.0;
-  /// Of a model's block, which may leave any of it out.
+  /// As a model's checked block has it.
   static TableRange of(const Teuchos::ParameterList& model);
   /// Whole steps that reach `to`. Not a number where the range is none.
   double intervals() const;

@@ -35,15 +35,13 @@ class BarnesHut final : public VortexSum {
     Specification specification;
     specification.real("opening", "θ: boxes of size s farther than s/θ are taken as one vortex of each sign")
         .at_least(0)
-        .defaults_to(default_opening);
-    specification.integer("leaf", "most vortices of a box that is not divided").at_least(1).defaults_to(default_leaf);
+        .defaults_to(0.5);
+    specification.integer("leaf", "most vortices of a box that is not divided").at_least(1).defaults_to(32);
     return specification;
   }
 
   BarnesHut(const Teuchos::ParameterList& list, const Context&)
-      : opening_(list.isParameter("opening") ? list.get<double>("opening") : default_opening),
-        leaf_(list.isParameter("leaf") ? list.get<int>("leaf") : default_leaf),
-        tree_(leaf_) {}
+      : opening_(list.get<double>("opening")), leaf_(list.get<int>("leaf")), tree_(leaf_) {}
 
   void velocities(const VortexKernel& kernel, const VortexArrays& vortices, const VortexTargets& targets, double factor,
                   double* velocities) override {
@@ -67,8 +65,6 @@ class BarnesHut final : public VortexSum {
   }
 
  private:
-  static constexpr double default_opening = 0.5;
-  static constexpr int default_leaf = 32;
   static constexpr int leaves_a_group = 2;
 
   void sum_at(const QuadtreeNode& group, const VortexKernel& kernel, const double* points, double factor,

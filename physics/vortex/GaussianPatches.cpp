@@ -84,8 +84,7 @@ void PatchGrid::add_entries(Specification& specification) {
   });
 }
 
-PatchGrid::PatchGrid(const Teuchos::ParameterList& list)
-    : path_(list.name()), cutoff_(list.isParameter("cutoff") ? list.get<double>("cutoff") : 3.0) {
+PatchGrid::PatchGrid(const Teuchos::ParameterList& list) : path_(list.name()), cutoff_(list.get<double>("cutoff")) {
   if (list.isParameter("spacing")) spacing_ = list.get<double>("spacing");
   if (list.isParameter("count")) count_ = list.get<int>("count");
   if ((spacing_ > 0.0) == (count_ > 0)) {

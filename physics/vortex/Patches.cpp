@@ -76,7 +76,7 @@ class RandomPatches final : public Vortices {
     const auto size = list.get<Teuchos::Array<double>>("size");
     const auto radius = list.get<Teuchos::Array<double>>("radius");
     const auto circulation = list.get<Teuchos::Array<double>>("circulation");
-    std::mt19937_64 generator(static_cast<std::uint64_t>(list.isParameter("seed") ? list.get<int>("seed") : 1));
+    std::mt19937_64 generator(static_cast<std::uint64_t>(list.get<int>("seed")));
     // The standard leaves open how its distributions use the generator.
     const auto between = [&generator](double lower, double upper) {
       return lower + (upper - lower) * std::ldexp(static_cast<double>(generator() >> 11), -53);

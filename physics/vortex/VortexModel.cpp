@@ -22,11 +22,6 @@ VortexTable table_of(const Teuchos::ParameterList& list, const Model::Context& c
   return whole_table(Registry<Vortices>::create(particles, {context.communicator})->cloud(), particles.name());
 }
 
-Teuchos::ParameterList sum_block(const Teuchos::ParameterList& list) {
-  if (list.isSublist("sum")) return list.sublist("sum");
-  return Teuchos::ParameterList(list.name() + ".sum").set("type", std::string("direct"));
-}
-
 /// This rank's block of the rows.
 std::vector<GlobalIndex> block_of(const std::vector<GlobalIndex>& rows, const Communicator& communicator) {
   const std::size_t rank = communicator.getRank(), ranks = communicator.getSize();
@@ -73,8 +68,8 @@ VortexModel::VortexModel(const Teuchos::ParameterList& list, const Teuchos::RCP<
       table_(std::move(table)),
       row_count_(static_cast<LocalIndex>(own_rows.size())),
       kernel_(Registry<VortexKernel>::create(list.sublist("kernel"), {})),
-      sum_(Registry<VortexSum>::create(sum_block(list), {})),
-      circulation_scale_(list.isParameter("circulation_scale") ? list.get<double>("circulation_scale") : 1.0) {
+      sum_(Registry<VortexSum>::create(list.sublist("sum"), {})),
+      circulation_scale_(list.get<double>("circulation_scale")) {
   parameters_.add("kernel", kernel_->parameters());
   parameters_.add("circulation_scale", "1", &circulation_scale_);
   const std::vector<GlobalIndex> own_sources = sources_of(table_, own_rows);

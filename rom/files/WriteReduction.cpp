@@ -1,4 +1,3 @@
-#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Json.hpp"
 #include "framework/files/Seal.hpp"
@@ -21,18 +21,11 @@ namespace {
 
 /// Ids that any rank holds, ascending and once each, on every rank.
 std::vector<GlobalIndex> all_ids(const Map& map) {
-  const Communicator& communicator = *map.getComm();
-  const std::size_t local = local_size(map);
-  const int mine = static_cast<int>(local);
-  int longest = mine;
-  Teuchos::reduceAll(communicator, Teuchos::REDUCE_MAX, 1, &mine, &longest);
-  constexpr GlobalIndex none = -1;
-  std::vector<GlobalIndex> padded(longest, none), ids(static_cast<std::size_t>(longest) * communicator.getSize());
-  for (std::size_t i = 0; i < local; ++i) padded[i] = map.getGlobalElement(static_cast<LocalIndex>(i));
-  Teuchos::gatherAll(communicator, longest, padded.data(), static_cast<int>(ids.size()), ids.data());
+  std::vector<GlobalIndex> ids(local_size(map));
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = map.getGlobalElement(static_cast<LocalIndex>(i));
+  ids = concatenated(*map.getComm(), ids);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  if (!ids.empty() && ids.front() == none) ids.erase(ids.begin());
   return ids;
 }
 

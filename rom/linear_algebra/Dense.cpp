@@ -4,6 +4,7 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Lanes.hpp"
 
 namespace kiln::dense {
@@ -201,22 +202,12 @@ MatrixView gram(const ConstMatrixView& a) {
 
 void sum_over_ranks(const Communicator& communicator, double* values, std::size_t count) {
   if (communicator.getSize() == 1) return;
-  // Blocks keep the second buffer, and MPI's count, small.
-  constexpr std::size_t block = std::size_t(1) << 22;
-  std::vector<double> sum(std::min(block, count));
-  for (std::size_t first = 0; first < count; first += block) {
-    const int length = static_cast<int>(std::min(block, count - first));
+  std::vector<double> sum;
+  in_pieces(count, [&](std::size_t first, int length) {
+    sum.resize(length);
     Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, length, values + first, sum.data());
     std::copy_n(sum.data(), length, values + first);
-  }
-}
-
-void broadcast(const Communicator& communicator, double* values, std::size_t count) {
-  if (communicator.getSize() == 1) return;
-  constexpr std::size_t block = std::size_t(1) << 26;
-  for (std::size_t first = 0; first < count; first += block) {
-    Teuchos::broadcast(communicator, 0, static_cast<int>(std::min(block, count - first)), values + first);
-  }
+  });
 }
 
 MatrixView row_block(const MatrixView& a, std::size_t first, std::size_t count) {

@@ -30,8 +30,6 @@ MatrixView gram(const ConstMatrixView& a);
 
 /// Sums a contiguous array over all ranks, in place.
 void sum_over_ranks(const Communicator& communicator, double* values, std::size_t count);
-/// Gives every rank what rank 0 holds.
-void broadcast(const Communicator& communicator, double* values, std::size_t count);
 
 /// The block of rows first … first + count − 1.
 MatrixView row_block(const MatrixView& a, std::size_t first, std::size_t count);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Loop.hpp"
 #include "rom/pod/Tsqr.hpp"
 
@@ -152,8 +153,8 @@ Pod pod(const Snapshots& snapshots, const PodSettings& settings, const Communica
     factors.emplace(range_of(matrix, *settings.rank, communicator));
     small = small_half_of_projection(*factors, matrix, communicator);
   }
-  dense::broadcast(communicator, small.singular_values.data(), small.singular_values.size());
-  dense::broadcast(communicator, small.to_modes.data(), small.to_modes.size());
+  broadcast(communicator, 0, small.singular_values.data(), small.singular_values.size());
+  broadcast(communicator, 0, small.to_modes.data(), small.to_modes.size());
 
   const std::size_t count = snapshots.appended();
   Pod result{

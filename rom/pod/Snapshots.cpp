@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "framework/base/Collectives.hpp"
 #include "rom/pod/Tsqr.hpp"
 
 namespace kiln {
@@ -76,8 +77,8 @@ void Snapshots::compress() {
     values = svd.values;
     Kokkos::deep_copy(directions, svd.left);
   }
-  dense::broadcast(*communicator_, values.data(), values.size());
-  dense::broadcast(*communicator_, directions.data(), directions.size());
+  broadcast(*communicator_, 0, values.data(), values.size());
+  broadcast(*communicator_, 0, directions.data(), directions.size());
   double energy = 0.0;
   for (const double value : values) energy += value * value;
   appended_energy_ = energy + discarded_;

@@ -1,27 +1,27 @@
 #include "rom/pod/Tsqr.hpp"
 
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+
+#include "framework/base/Collectives.hpp"
 
 namespace kiln {
 
 Tsqr::Tsqr(MatrixView a, const Communicator& communicator) : local_(a), rows_(a.extent(0)) {
   const std::size_t columns = a.extent(1);
   const MatrixView local_r = local_.r();
-  const int mine = static_cast<int>(local_r.extent(0));
-  std::vector<int> counts(communicator.getSize());
-  Teuchos::gatherAll(communicator, 1, &mine, static_cast<int>(counts.size()), counts.data());
-  std::size_t first = 0, total = 0;
-  for (int rank = 0; rank < communicator.getSize(); ++rank) {
-    if (rank == communicator.getRank()) first = total;
-    total += counts[rank];
-  }
-
-  // Each rank's block of rows added to zeros: a gather in the one collective that Teuchos has for it.
+  const std::vector<std::vector<double>> factors =
+      gathered(communicator, std::vector<double>(local_r.data(), local_r.data() + local_r.size()));
+  const auto height = [columns](const std::vector<double>& r) { return columns == 0 ? 0 : r.size() / columns; };
+  std::size_t total = 0;
+  for (const std::vector<double>& r : factors) total += height(r);
   MatrixView stack("kiln::rom::stacked R", total, columns);
-  for (std::size_t j = 0; j < columns; ++j)
-    std::copy_n(local_r.data() + j * mine, mine, stack.data() + j * total + first);
-  dense::sum_over_ranks(communicator, stack.data(), stack.size());
+  std::size_t top = 0, own_top = 0;
+  for (int rank = 0; rank < communicator.getSize(); ++rank) {
+    const std::vector<double>& r = factors[rank];
+    for (std::size_t j = 0; j < columns; ++j) std::copy_n(&r[j * height(r)], height(r), &stack(top, j));
+    if (rank == communicator.getRank()) own_top = top;
+    top += height(r);
+  }
 
   const std::size_t rank_of_r = std::min(total, columns);
   MatrixView q("kiln::rom::stacked Q", total, rank_of_r);
@@ -37,9 +37,9 @@ Tsqr::Tsqr(MatrixView a, const Communicator& communicator) : local_(a), rows_(a.
     second.apply_q(q);
   }
   // One rank's factors for all: processors that round differently would otherwise disagree about Q.
-  dense::broadcast(communicator, r_.data(), r_.size());
-  dense::broadcast(communicator, q.data(), q.size());
-  stacked_q_ = dense::row_block(q, first, mine);
+  broadcast(communicator, 0, r_.data(), r_.size());
+  broadcast(communicator, 0, q.data(), q.size());
+  stacked_q_ = dense::row_block(q, own_top, local_r.extent(0));
 }
 
 MatrixView Tsqr::apply(const ConstMatrixView& c) const {

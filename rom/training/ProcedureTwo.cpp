@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <Tpetra_MultiVector.hpp>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/base/StopRequest.hpp"
 #include "framework/files/AtomicFile.hpp"
@@ -138,10 +138,7 @@ std::vector<int> ProcedureTwo::window_ends(double error) const {
   if (windows_.error) {
     ends = windows_within(*costs_, *basis_settings_.rank, error);
     // Round-off must not make ranks disagree.
-    int count = static_cast<int>(ends.size());
-    Teuchos::broadcast(*communicator_, 0, &count);
-    ends.resize(count);
-    Teuchos::broadcast(*communicator_, 0, count, ends.data());
+    broadcast(*communicator_, 0, ends);
   } else if (windows_.count) {
     const int count = *windows_.count;
     for (int w = 1; w <= count; ++w) ends.push_back(static_cast<int>(static_cast<long long>(snapshots) * w / count));

@@ -27,13 +27,18 @@ struct HeatCase {
   double initial_temperature = 293.15;
   Teuchos::ParameterList material = Teuchos::ParameterList("model.material").set("type", std::string("316L"));
   Teuchos::ParameterList heat_source = beam(40.0);
-  Teuchos::ParameterList table = Teuchos::ParameterList("model.table");
+  Teuchos::ParameterList table = table_block();
 
   static Teuchos::ParameterList beam(double power) {
     Teuchos::ParameterList list("model.heat_source");
     list.set("type", std::string("gaussian beam")).set("power", power).set("width", 60e-6);
     list.set("start", reals({0.1e-3, 0.15e-3})).set("velocity", reals({0.5, 0.1}));
     return list.set("normalisation", std::string("standard"));
+  }
+  static Teuchos::ParameterList table_block() {
+    const TableRange usual;
+    Teuchos::ParameterList list("model.table");
+    return list.set("from", usual.from).set("to", usual.to).set("step", usual.step);
   }
   static Teuchos::ParameterList no_source() {
     return Teuchos::ParameterList("model.heat_source").set("type", std::string("none"));

@@ -32,7 +32,7 @@ struct VortexCase {
     Teuchos::ParameterList& patches = list.sublist("patches").setName("model.particles.patches");
     patches.sublist("0").set("centre", reals({-0.8, 0.1})).set("radius", 0.4).set("circulation", 2.0);
     patches.sublist("1").set("centre", reals({0.9, -0.2})).set("radius", 0.5).set("circulation", -1.2);
-    return list.set("spacing", spacing);
+    return list.set("spacing", spacing).set("cutoff", 3.0);
   }
   static Teuchos::ParameterList pair(double left, double right, double separation) {
     return block("pair").set("circulations", reals({left, right})).set("separation", separation);

@@ -24,7 +24,7 @@ Teuchos::ParameterList one_patch() {
   Teuchos::ParameterList list = VortexCase::block("patches");
   Teuchos::ParameterList& patches = list.sublist("patches").setName("model.particles.patches");
   patches.sublist("0").set("centre", reals({0.3, -0.7})).set("radius", 0.5).set("circulation", 1.7);
-  return list;
+  return list.set("cutoff", 3.0);
 }
 
 TEST(Patches, AreAGaussianOnARegularGrid) {
