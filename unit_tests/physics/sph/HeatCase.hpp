@@ -10,10 +10,9 @@
 
 #include "framework/registry/Registry.hpp"
 #include "physics/sph/HeatModel.hpp"
+#include "unit_tests/physics/ModelCase.hpp"
 
 namespace kiln {
-
-inline Teuchos::Array<double> reals(std::vector<double> values) { return Teuchos::Array<double>(values); }
 
 /// The input of a small `sph heat` case, as the checker would hand it to the model.
 struct HeatCase {
@@ -68,13 +67,6 @@ struct HeatCase {
   }
   std::unique_ptr<HeatModel> model() const { return model(Tpetra::getDefaultComm()); }
 };
-
-/// A communicator of this rank alone.
-inline Teuchos::RCP<const Communicator> alone() {
-  const auto everyone = Tpetra::getDefaultComm();
-  const int rank = everyone->getRank();
-  return everyone->createSubcommunicator(Teuchos::ArrayView<const int>(&rank, 1));
-}
 
 /// A rough temperature of a particle between 300 K and 3500 K that depends on its id only: every phase, no pattern.
 inline double rough_temperature(GlobalIndex id) {

@@ -11,10 +11,9 @@
 
 #include "framework/registry/Registry.hpp"
 #include "physics/vortex/VortexModel.hpp"
+#include "unit_tests/physics/ModelCase.hpp"
 
 namespace kiln {
-
-inline Teuchos::Array<double> reals(std::vector<double> values) { return Teuchos::Array<double>(values); }
 
 /// The input of a small `vortex` case, as the checker would hand it to the model.
 struct VortexCase {
@@ -57,13 +56,6 @@ struct VortexCase {
 
   VortexCloud cloud() const { return Registry<Vortices>::create(particles, {Tpetra::getDefaultComm()})->cloud(); }
 };
-
-/// A communicator of this rank alone.
-inline Teuchos::RCP<const Communicator> alone() {
-  const auto everyone = Tpetra::getDefaultComm();
-  const int rank = everyone->getRank();
-  return everyone->createSubcommunicator(Teuchos::ArrayView<const int>(&rank, 1));
-}
 
 /// A distributed array of two components a particle, whole on every rank, by ids.
 inline std::vector<double> gathered(const Map& rows, ConstVectorView values) {

@@ -1,11 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "framework/base/Error.hpp"
-#include "framework/input/Input.hpp"
-#include "unit_tests/framework/files/TestFolder.hpp"
 #include "unit_tests/physics/vortex/VortexCase.hpp"
 
 namespace kiln {
@@ -72,7 +69,7 @@ TEST(VortexErrors, UnknownKernelIsNamedWithTheNearestOne) {
 
 /// The block of a YAML file through the checker, with one line replaced.
 std::string checked(const std::string& line, const std::string& replacement) {
-  std::string text =
+  const std::string text =
       "model:\n"
       "  type: vortex\n"
       "  particles:\n"
@@ -80,16 +77,8 @@ std::string checked(const std::string& line, const std::string& replacement) {
       "    patches: [{centre: [0 m, 1 m], radius: 0.5 m, circulation: 2 m^2/s}]\n"
       "    spacing: 0.2 m\n"
       "  kernel: {type: rosenhead-moore, core_radius: 0.1 m}\n";
-  text.replace(text.find(line), line.size(), replacement);
-  const TestFolder folder;
-  const auto everyone = Tpetra::getDefaultComm();
-  if (everyone->getRank() == 0) std::ofstream(folder / "case.yaml") << text;
-  everyone->barrier();
-  Specification specification;
-  specification.component<Model>("model", "the model");
   try {
-    const Input input = Input::read(folder / "case.yaml", {}, specification, *everyone);
-    const auto model = Registry<Model>::create(input.list().sublist("model"), {everyone});
+    const auto model = Registry<Model>::create(checked_model(text, line, replacement), {Tpetra::getDefaultComm()});
     return model->rows()->getGlobalNumElements() > 100 ? nothing : "few particles";
   } catch (const InputError& error) {
     return error.what();
