@@ -134,6 +134,17 @@ class ReductionTest(KilnTest):
         self.assertEqual((held, report["observers"]["extremes"]["every"]), (report["method"]["held"], 1))
         self.assertLess(held, report["method"]["full_order_particles"])
 
+    def test_a_full_order_and_a_reduced_run_are_compared_on_the_particles_of_both(self):
+        self.solve("run", "method.type=gnat")
+        files = ("compare", self.solve("run", into="full") / "fom/run.h5", self.folder / "results/gnat/run.h5")
+        outcome = self.kiln(*files, "--tolerance", 1e-4)
+        self.assertEqual(outcome.status, 1)
+        self.assertIn("FAULT /temperature has shape ", outcome.stdout)
+        outcome = self.kiln(*files, "--tolerance", 1e-4, "--common")
+        self.assertEqual(outcome.status, 0, outcome.stdout)
+        self.assertRegex(outcome.stdout, r"ALONE 1728 and \d+ particles, \d+ of them common\n")
+        self.assertEqual(self.kiln(*files, "--tolerance", 1e-9, "--common").status, 1)
+
     def test_points_that_were_tried_are_inside(self):
         points = "reduction.try_on={points: {heat_source.power: [24 W]}}"
         self.solve("train", points, into="tried")

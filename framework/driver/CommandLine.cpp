@@ -266,10 +266,10 @@ class Commands {
     added->add_option("B", right_, "the same kind; A's errors are relative to it")
         ->required()
         ->check(CLI::ExistingPath);
-    added->add_option("--tolerance", tolerance_, "largest relative difference")
+    added->add_option("--tolerance", compare_settings_.tolerance, "largest relative difference")
         ->capture_default_str()
         ->check(non_negative);
-    added->add_option("--floor", floor_, "values below it count as this large")
+    added->add_option("--floor", compare_settings_.floor, "values below it count as this large")
         ->capture_default_str()
         ->check(non_negative);
     added
@@ -278,16 +278,19 @@ class Commands {
                      "for any text; of several the first one counts")
         ->type_name("FIELDS=TOLERANCE[,FLOOR]")
         ->allow_extra_args(false);
+    added->add_flag("--common", compare_settings_.common,
+                    "compare only what both sides hold, and of run files the particles that both hold, by their ids: "
+                    "a full-order run with a reduced one");
   }
 
   int compare_files() const {
-    std::vector<FieldTolerance> own;
-    for (const std::string& text : own_tolerances_) own.push_back(field_tolerance(text));
+    CompareSettings settings = compare_settings_;
+    for (const std::string& text : own_tolerances_) settings.own.push_back(field_tolerance(text));
     int status = exit_success;
     std::string text;
     if (communicator_->getRank() == 0) {
       try {
-        const CompareResult result = compare(left_, right_, tolerance_, floor_, own);
+        const CompareResult result = compare(left_, right_, settings);
         text = result.text();
         for (const std::string& problem : result.unreadable) std::fprintf(stderr, "%s\n", problem.c_str());
         status = !result.unreadable.empty() ? exit_bad_input : result.same() ? exit_success : exit_failure;
@@ -315,7 +318,7 @@ class Commands {
   StudyOptions study_options_;
   bool list_only_ = false;
   std::string name_, kind_ = "input", left_, right_, folder_;
-  double tolerance_ = 1e-10, floor_ = 0.0;
+  CompareSettings compare_settings_;
   std::vector<std::string> own_tolerances_;
   std::function<int()> command_;
 };

@@ -73,7 +73,7 @@ void compare_folders(const fs::path& a, const fs::path& b, NumberComparison& com
     if (in_a && in_b) {
       compare_files(a / name, b / name, name + ":", comparison);
     } else {
-      comparison.fault(fmt::format("{} is missing in {}", name, (in_a ? b : a).string()));
+      comparison.one_sided(fmt::format("{} is missing in {}", name, (in_a ? b : a).string()));
     }
   }
 }
@@ -83,12 +83,12 @@ void compare_folders(const fs::path& a, const fs::path& b, NumberComparison& com
 void NumberComparison::begin(const std::string& field) {
   FieldDifference difference;
   difference.field = field;
-  difference.tolerance = tolerance_;
-  difference.floor = floor_;
-  const auto own =
-      std::find_if(own_.begin(), own_.end(), [&field](const FieldTolerance& each) { return each.matches(field); });
-  if (own != own_.end()) {
-    used_[own - own_.begin()] = true;
+  difference.tolerance = settings_.tolerance;
+  difference.floor = settings_.floor;
+  const auto own = std::find_if(settings_.own.begin(), settings_.own.end(),
+                                [&field](const FieldTolerance& each) { return each.matches(field); });
+  if (own != settings_.own.end()) {
+    used_[own - settings_.own.begin()] = true;
     difference.tolerance = own->tolerance;
     difference.floor = own->floor;
   }
@@ -109,9 +109,9 @@ void NumberComparison::add(double a, double b, const std::function<std::string()
 }
 
 void NumberComparison::fault_unused_tolerances() {
-  for (std::size_t i = 0; i < own_.size(); ++i) {
-    if (!used_[i])
-      fault(fmt::format("no field is called '{}', or all that are have an earlier tolerance", own_[i].fields));
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    if (used_[i]) continue;
+    fault(fmt::format("no field is called '{}', or all that are have an earlier tolerance", settings_.own[i].fields));
   }
 }
 
@@ -139,17 +139,17 @@ std::string CompareResult::text() const {
     }
     text += "\n";
   }
+  for (const std::string& text_of_one : one_sided) text += "ALONE " + text_of_one + "\n";
   for (const std::string& fault : faults) text += "FAULT " + fault + "\n";
   if (compared() == 0) text += "FAULT nothing was compared\n";
   return text + fmt::format("{}: {} numbers compared\n", same() ? "same" : "different", compared());
 }
 
-CompareResult compare(const fs::path& a, const fs::path& b, double tolerance, double floor,
-                      const std::vector<FieldTolerance>& own) {
-  require_finite(tolerance, floor);
-  for (const FieldTolerance& each : own) require_finite(each.tolerance, each.floor);
+CompareResult compare(const fs::path& a, const fs::path& b, const CompareSettings& settings) {
+  require_finite(settings.tolerance, settings.floor);
+  for (const FieldTolerance& each : settings.own) require_finite(each.tolerance, each.floor);
   CompareResult result;
-  NumberComparison comparison(tolerance, floor, own, result);
+  NumberComparison comparison(settings, result);
   for (const fs::path& side : {a, b}) {
     if (!fs::exists(side)) comparison.fault(side.string() + " is missing");
   }

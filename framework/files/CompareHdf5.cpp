@@ -4,6 +4,7 @@
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -42,6 +43,8 @@ class RunFacts {
     return is_run_ && shape.size() == 2 && shape[0] == time_.size() && shape[1] == particle_.size();
   }
   std::size_t frames() const { return time_.size(); }
+  const std::vector<long long>& particles() const { return particle_; }
+  double position(std::size_t i, std::size_t axis) const { return position_[3 * i + axis]; }
   bool written(std::size_t frame) const { return !std::isnan(time_[frame]); }
   std::string where(std::size_t frame, std::size_t i) const {
     return fmt::format("frame {}, t = {:.6g} s, particle {} at ({:.6g}, {:.6g}, {:.6g}) m", frame, time_[frame],
@@ -57,7 +60,9 @@ class RunFacts {
 class Hdf5Comparison {
  public:
   Hdf5Comparison(const hdf5::Group& a, const hdf5::Group& b, std::string label, NumberComparison& comparison)
-      : facts_a_(a), facts_b_(b), label_(std::move(label)), comparison_(comparison) {}
+      : facts_a_(a), facts_b_(b), label_(std::move(label)), comparison_(comparison) {
+    if (is_run()) pair_particles();
+  }
 
   void compare_groups(const hdf5::Group& a, const hdf5::Group& b, int depth = 0) {
     // Hard links may lead round in a circle.
@@ -70,7 +75,7 @@ class Hdf5Comparison {
       const std::string path = a.path() == "/" ? "/" + name : a.path() + "/" + name;
       if (is_run() && is_view(path)) continue;
       if (!a.has(name) || !b.has(name)) {
-        comparison_.fault(fmt::format("{}{} is missing in {}", label_, path, (a.has(name) ? b : a).file()));
+        comparison_.one_sided(fmt::format("{}{} is missing in {}", label_, path, (a.has(name) ? b : a).file()));
       } else {
         compare_objects(a, b, name, path, depth);
       }
@@ -80,6 +85,21 @@ class Hdf5Comparison {
  private:
   bool is_run() const { return facts_a_.is_run() && facts_b_.is_run(); }
 
+  /// Row by row, or by their ids where only what is common counts.
+  void pair_particles() {
+    const std::vector<long long>&a = facts_a_.particles(), &b = facts_b_.particles();
+    std::map<long long, std::size_t> row_of;
+    for (std::size_t j = 0; j < b.size(); ++j)
+      row_of.emplace(comparison_.common() ? b[j] : static_cast<long long>(j), j);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto other = row_of.find(comparison_.common() ? a[i] : static_cast<long long>(i));
+      if (other != row_of.end()) pairs_.emplace_back(i, other->second);
+    }
+    if (!comparison_.common() || (pairs_.size() == a.size() && pairs_.size() == b.size())) return;
+    comparison_.one_sided(
+        fmt::format("{}{} and {} particles, {} of them common", label_, a.size(), b.size(), pairs_.size()));
+  }
+
   void compare_objects(const hdf5::Group& a, const hdf5::Group& b, const std::string& name, const std::string& path,
                        int depth) {
     const bool reals = a.holds_reals(name), integers = a.holds_integers(name);
@@ -87,13 +107,17 @@ class Hdf5Comparison {
       return comparison_.fault(label_ + path + " is of different kinds");
     }
     if (!reals && !integers) return compare_groups(a.group(name), b.group(name), depth + 1);
-    const std::vector<std::size_t> shape = a.shape(name);
-    if (shape != b.shape(name)) {
-      return comparison_.fault(fmt::format("{}{} has shape {} and {}", label_, path, fmt::join(shape, " × "),
-                                           fmt::join(b.shape(name), " × ")));
+    const std::vector<std::size_t> shape = a.shape(name), other_shape = b.shape(name);
+    const bool common_rows = is_run() && comparison_.common();
+    if (common_rows && path == "/particle") return;
+    if (common_rows && path == "/position") return compare_positions(path);
+    if (reals && is_run() && facts_a_.is_frames(shape) && facts_b_.is_frames(other_shape) &&
+        (shape == other_shape || (common_rows && facts_a_.frames() == facts_b_.frames()))) {
+      return compare_frames(a, b, name, path);
     }
-    if (reals && is_run() && facts_a_.is_frames(shape) && facts_b_.is_frames(shape)) {
-      return compare_frames(a, b, name, path, shape[1]);
+    if (shape != other_shape) {
+      return comparison_.one_sided(fmt::format("{}{} has shape {} and {}", label_, path, fmt::join(shape, " × "),
+                                               fmt::join(other_shape, " × ")));
     }
     comparison_.begin(label_ + path);
     if (integers) {
@@ -112,21 +136,31 @@ class Hdf5Comparison {
     }
   }
 
-  void compare_frames(const hdf5::Group& a, const hdf5::Group& b, const std::string& name, const std::string& path,
-                      std::size_t particles) {
+  void compare_frames(const hdf5::Group& a, const hdf5::Group& b, const std::string& name, const std::string& path) {
     comparison_.begin(label_ + path);
     for (std::size_t frame = 0; frame < facts_a_.frames(); ++frame) {
       if (!facts_a_.written(frame) && !facts_b_.written(frame)) continue;
-      const auto left = a.read_block(name, {frame, 0}, {1, particles});
-      const auto right = b.read_block(name, {frame, 0}, {1, particles});
+      const auto left = a.read_block(name, {frame, 0}, {1, facts_a_.particles().size()});
+      const auto right = b.read_block(name, {frame, 0}, {1, facts_b_.particles().size()});
       const RunFacts& facts = facts_a_.written(frame) ? facts_a_ : facts_b_;
-      for (std::size_t i = 0; i < particles; ++i) {
-        comparison_.add(left[i], right[i], [&] { return facts.where(frame, i); });
+      for (const auto& [i, j] : pairs_) {
+        comparison_.add(left[i], right[j], [&, row = &facts == &facts_a_ ? i : j] { return facts.where(frame, row); });
+      }
+    }
+  }
+
+  void compare_positions(const std::string& path) {
+    comparison_.begin(label_ + path);
+    for (const auto& [i, j] : pairs_) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        comparison_.add(facts_a_.position(i, axis), facts_b_.position(j, axis),
+                        [&, i = i] { return fmt::format("particle {}", facts_a_.particles()[i]); });
       }
     }
   }
 
   RunFacts facts_a_, facts_b_;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  ///< rows of the same particle
   std::string label_;
   NumberComparison& comparison_;
 };

@@ -10,15 +10,18 @@ namespace kiln {
 /// Compares the numbers of one field after the other and keeps the worst.
 class NumberComparison {
  public:
-  /// Fields that none of `own` names have `tolerance` and `floor`; of several that do, the first one counts.
-  NumberComparison(double tolerance, double floor, std::vector<FieldTolerance> own, CompareResult& result)
-      : tolerance_(tolerance), floor_(floor), own_(std::move(own)), used_(own_.size(), false), result_(result) {}
+  NumberComparison(const CompareSettings& settings, CompareResult& result)
+      : settings_(settings), used_(settings.own.size(), false), result_(result) {}
 
+  /// Whether only what both sides hold is compared.
+  bool common() const { return settings_.common; }
   /// The numbers that follow belong to this field.
   void begin(const std::string& field);
   /// `where` is asked only when this is the worst so far.
   void add(double a, double b, const std::function<std::string()>& where);
   void fault(const std::string& text) { result_.faults.push_back(text); }
+  /// Of what one side alone holds: a fault unless only what is common counts.
+  void one_sided(const std::string& text) { (common() ? result_.one_sided : result_.faults).push_back(text); }
   void unreadable(const std::string& text) {
     fault(text);
     result_.unreadable.push_back(text);
@@ -29,10 +32,8 @@ class NumberComparison {
   void fault_unused_tolerances();
 
  private:
-  double tolerance_;
-  double floor_;
-  std::vector<FieldTolerance> own_;
-  std::vector<bool> used_;
+  const CompareSettings& settings_;
+  std::vector<bool> used_;  ///< of the fields' own tolerances
   CompareResult& result_;
 };
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -60,7 +61,7 @@ class JsonComparison {
       if (is_left_out(key)) continue;
       const std::string full = path.empty() ? key : path + "." + key;
       if (!a.contains(key) || !b.contains(key)) {
-        comparison_.fault(
+        comparison_.one_sided(
             fmt::format("{}{} is missing on the {} side", label_, full, a.contains(key) ? "second" : "first"));
       } else {
         compare(a.at(key), b.at(key), full);
@@ -69,7 +70,7 @@ class JsonComparison {
   }
   void compare_arrays(const nlohmann::json& a, const nlohmann::json& b, const std::string& path) {
     if (a.size() != b.size()) {
-      return comparison_.fault(fmt::format("{}{} has {} and {} entries", label_, path, a.size(), b.size()));
+      return comparison_.one_sided(fmt::format("{}{} has {} and {} entries", label_, path, a.size(), b.size()));
     }
     for (std::size_t i = 0; i < a.size(); ++i) compare(a[i], b[i], fmt::format("{}[{}]", path, i));
   }
@@ -106,7 +107,7 @@ class RowPlaces {
 void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b, const std::string& label,
                  NumberComparison& comparison) {
   const CsvTable left = read_csv(a), right = read_csv(b);
-  if (left.columns != right.columns) {
+  if (left.columns != right.columns && !comparison.common()) {
     return comparison.fault(fmt::format("{} and {} have different columns", a.string(), b.string()));
   }
   if (left.rows.size() != right.rows.size()) {
@@ -115,9 +116,12 @@ void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b,
   }
   const RowPlaces places(left);
   for (std::size_t column = 0; column < left.columns.size(); ++column) {
+    const auto same = std::find(right.columns.begin(), right.columns.end(), left.columns[column]);
+    if (same == right.columns.end()) continue;
+    const std::size_t other = same - right.columns.begin();
     comparison.begin(label + left.columns[column]);
     for (std::size_t row = 0; row < left.rows.size(); ++row) {
-      comparison.add(left.rows[row][column], right.rows[row][column], [&] { return places.where(row); });
+      comparison.add(left.rows[row][column], right.rows[row][other], [&] { return places.where(row); });
     }
   }
 }

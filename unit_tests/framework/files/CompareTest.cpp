@@ -16,27 +16,23 @@
 namespace kiln {
 namespace {
 
-constexpr int particles = 5;
-
 Teuchos::RCP<const Communicator> world() { return Tpetra::getDefaultComm(); }
 
 void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
 /// Frames of steps 0, 1, 2; the last one only when asked for.
-void write_run(const std::string& path, int frames = 3, double added = 0.0, const char* field = "temperature") {
+void write_run(const std::string& path, int frames = 3, double added = 0.0, const char* field = "temperature",
+               const std::vector<GlobalIndex>& ids = {0, 1, 2, 3, 4}) {
   std::filesystem::create_directories(path);
-  const Map map(particles, 0, world());
-  PositionView positions("kiln::test::positions", particles);
-  VectorView u("kiln::test::state", particles);
-  const auto host_positions = Kokkos::create_mirror_view(positions);
-  for (int i = 0; i < particles; ++i) host_positions(i, 0) = 1e-3 * i;
-  Kokkos::deep_copy(positions, host_positions);
+  const Map map(ids.size(), Teuchos::arrayViewFromVector(ids), 0, world());
+  PositionView positions("kiln::test::positions", ids.size());
+  VectorView u("kiln::test::state", ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) positions(i, 0) = 1e-3 * static_cast<double>(ids[i]);
   RunFile file(path, map, positions, {{{field, "K"}}, {0, 1, 2}, {}}, 0, world());
   for (int frame = 0; frame < frames; ++frame) {
-    const auto host = Kokkos::create_mirror_view(u);
-    for (int i = 0; i < particles; ++i) host(i) = 300.0 + 10.0 * i + frame;
-    if (frame == 1) host(3) += added;
-    Kokkos::deep_copy(u, host);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      u(i) = 300.0 + 10.0 * static_cast<double>(ids[i]) + frame + (frame == 1 && ids[i] == 3 ? added : 0.0);
+    }
     file.write(frame, 0.5 * frame, u);
   }
 }
@@ -58,7 +54,7 @@ TEST(Compare, EqualRunsAreSame) {
   TestFolder folder;
   write_folder(folder / "a");
   write_folder(folder / "b");
-  const CompareResult result = compare(folder / "a", folder / "b", 0.0, 0.0);
+  const CompareResult result = compare(folder / "a", folder / "b", {0.0, 0.0});
   EXPECT_TRUE(result.same()) << result.text();
   // Temperatures, times, steps, ids and coordinates; 2 rows of 3; steps and peak_kelvin.
   EXPECT_EQ(result.compared(), 15u + 3u + 3u + 5u + 15u + 6u + 2u);
@@ -69,7 +65,7 @@ TEST(Compare, TellsWhereTheWorstDifferenceIs) {
   TestFolder folder;
   write_run(folder / "a");
   write_run(folder / "b", 3, 0.331);
-  const CompareResult result = compare(folder / "a/run.h5", folder / "b/run.h5", 1e-6, 0.0);
+  const CompareResult result = compare(folder / "a/run.h5", folder / "b/run.h5", {1e-6, 0.0});
   expect_different(result, "frame 1, t = 0.5 s, particle 3 at (0.003, 0, 0) m");
   const auto field = std::find_if(result.fields.begin(), result.fields.end(),
                                   [](const FieldDifference& f) { return f.field == "/temperature"; });
@@ -77,24 +73,24 @@ TEST(Compare, TellsWhereTheWorstDifferenceIs) {
   EXPECT_EQ(field->failed, 1u);
   EXPECT_NEAR(field->worst, 0.331 / 331.331, 1e-12);
   EXPECT_EQ(field->a, 331.0);
-  EXPECT_TRUE(compare(folder / "a/run.h5", folder / "b/run.h5", 1.001e-3, 0.0).same());
-  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "b/run.h5", 0.998e-3, 0.0).same());
-  EXPECT_TRUE(compare(folder / "a/run.h5", folder / "b/run.h5", 1e-6, 0.332e6).same()) << "the floor counts";
+  EXPECT_TRUE(compare(folder / "a/run.h5", folder / "b/run.h5", {1.001e-3, 0.0}).same());
+  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "b/run.h5", {0.998e-3, 0.0}).same());
+  EXPECT_TRUE(compare(folder / "a/run.h5", folder / "b/run.h5", {1e-6, 0.332e6}).same()) << "the floor counts";
 }
 
 TEST(Compare, MissingThingsFail) {
   TestFolder folder;
   write_folder(folder / "a");
   write_folder(folder / "b");
-  expect_different(compare(folder / "a", folder / "none", 1.0, 1.0), "none is missing");
-  expect_different(compare(folder / "none", folder / "a", 1.0, 1.0), "none is missing");
+  expect_different(compare(folder / "a", folder / "none", {1.0, 1.0}), "none is missing");
+  expect_different(compare(folder / "none", folder / "a", {1.0, 1.0}), "none is missing");
   std::filesystem::remove(folder / "b/probes.csv");
-  expect_different(compare(folder / "a", folder / "b", 1.0, 1.0), "probes.csv is missing in " + (folder / "b"));
-  expect_different(compare(folder / "b", folder / "a", 1.0, 1.0), "probes.csv is missing in " + (folder / "b"));
+  expect_different(compare(folder / "a", folder / "b", {1.0, 1.0}), "probes.csv is missing in " + (folder / "b"));
+  expect_different(compare(folder / "b", folder / "a", {1.0, 1.0}), "probes.csv is missing in " + (folder / "b"));
   write_run(folder / "c", 3, 0.0, "pressure");
-  expect_different(compare(folder / "a/run.h5", folder / "c/run.h5", 1.0, 1e9), "/temperature is missing in");
-  expect_different(compare(folder / "a/run.h5", folder / "b", 1.0, 1.0), "is a folder");
-  expect_different(compare(folder / "a/run.h5", folder / "a/report.json", 1.0, 1.0), "different kinds");
+  expect_different(compare(folder / "a/run.h5", folder / "c/run.h5", {1.0, 1e9}), "/temperature is missing in");
+  expect_different(compare(folder / "a/run.h5", folder / "b", {1.0, 1.0}), "is a folder");
+  expect_different(compare(folder / "a/run.h5", folder / "a/report.json", {1.0, 1.0}), "different kinds");
 }
 
 TEST(Compare, EmptiedGoldFails) {
@@ -102,19 +98,19 @@ TEST(Compare, EmptiedGoldFails) {
   std::filesystem::create_directories(folder / "empty");
   std::filesystem::create_directories(folder / "void");
   write_folder(folder / "a");
-  expect_different(compare(folder / "empty", folder / "void", 1.0, 1.0), "nothing was compared");
-  expect_different(compare(folder / "empty", folder / "a", 1.0, 1.0), "run.h5 is missing");
+  expect_different(compare(folder / "empty", folder / "void", {1.0, 1.0}), "nothing was compared");
+  expect_different(compare(folder / "empty", folder / "a", {1.0, 1.0}), "run.h5 is missing");
   write_text(folder / "empty/empty.csv", "");
   write_text(folder / "void/empty.csv", "");
-  expect_different(compare(folder / "empty/empty.csv", folder / "void/empty.csv", 1.0, 1.0), "is empty");
+  expect_different(compare(folder / "empty/empty.csv", folder / "void/empty.csv", {1.0, 1.0}), "is empty");
   write_text(folder / "empty/empty.csv", "step,a\n");
   write_text(folder / "void/empty.csv", "step,a\n");
-  expect_different(compare(folder / "empty/empty.csv", folder / "void/empty.csv", 1.0, 1.0), "nothing was compared");
+  expect_different(compare(folder / "empty/empty.csv", folder / "void/empty.csv", {1.0, 1.0}), "nothing was compared");
   write_text(folder / "empty/a.json", "{}");
   write_text(folder / "void/a.json", "{}");
-  expect_different(compare(folder / "empty/a.json", folder / "void/a.json", 1.0, 1.0), "nothing was compared");
+  expect_different(compare(folder / "empty/a.json", folder / "void/a.json", {1.0, 1.0}), "nothing was compared");
   write_text(folder / "empty/a.h5", "");
-  expect_different(compare(folder / "empty/a.h5", folder / "a/run.h5", 1.0, 1.0), "is not an HDF5 file");
+  expect_different(compare(folder / "empty/a.h5", folder / "a/run.h5", {1.0, 1.0}), "is not an HDF5 file");
 }
 
 TEST(Compare, FramesThatNeitherHasAreSkippedAndOneSidesFail) {
@@ -122,10 +118,30 @@ TEST(Compare, FramesThatNeitherHasAreSkippedAndOneSidesFail) {
   write_run(folder / "a", 2);
   write_run(folder / "b", 2);
   write_run(folder / "c", 3);
-  const CompareResult both = compare(folder / "a/run.h5", folder / "b/run.h5", 0.0, 0.0);
+  const CompareResult both = compare(folder / "a/run.h5", folder / "b/run.h5", {0.0, 0.0});
   EXPECT_TRUE(both.same()) << both.text();
-  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "c/run.h5", 1.0, 1e9).same());
-  EXPECT_FALSE(compare(folder / "c/run.h5", folder / "a/run.h5", 1.0, 1e9).same());
+  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "c/run.h5", {1.0, 1e9}).same());
+  EXPECT_FALSE(compare(folder / "c/run.h5", folder / "a/run.h5", {1.0, 1e9}).same());
+}
+
+/// Full order and a reduced run, which holds some of the particles only.
+TEST(Compare, OfDifferentParticlesOnlyTheCommonOnes) {
+  TestFolder folder;
+  write_run(folder / "a");
+  write_run(folder / "b", 3, 0.331, "temperature", {4, 3, 1});
+  const auto found = [&](double tolerance, bool common) {
+    return compare(folder / "a/run.h5", folder / "b/run.h5", {tolerance, 0.0, {}, common});
+  };
+  expect_different(found(1e-2, false), "FAULT /particle has shape 5 and 3");
+  const CompareResult result = found(1e-6, true);
+  expect_different(result, "frame 1, t = 0.5 s, particle 3 at (0.003, 0, 0) m");
+  EXPECT_TRUE(found(1.001e-3, true).same()) << found(1.001e-3, true).text();
+  EXPECT_NE(result.text().find("ALONE 5 and 3 particles, 3 of them common"), std::string::npos) << result.text();
+  // Temperatures, times, steps and coordinates.
+  EXPECT_EQ(result.compared(), 9u + 3u + 3u + 9u);
+  write_run(folder / "c", 3, 0.0, "pressure", {4, 3, 1});
+  const CompareResult other = compare(folder / "a/run.h5", folder / "c/run.h5", {0.0, 0.0, {}, true});
+  EXPECT_NE(other.text().find("ALONE /temperature is missing in"), std::string::npos) << other.text();
 }
 
 TEST(Compare, NanNeverAgrees) {
@@ -133,13 +149,13 @@ TEST(Compare, NanNeverAgrees) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   write_run(folder / "a", 3, nan);
   write_run(folder / "b");
-  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "b/run.h5", 1.0, 1e9).same());
-  EXPECT_FALSE(compare(folder / "b/run.h5", folder / "a/run.h5", 1.0, 1e9).same());
-  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "a/run.h5", 1.0, 1e9).same());
+  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "b/run.h5", {1.0, 1e9}).same());
+  EXPECT_FALSE(compare(folder / "b/run.h5", folder / "a/run.h5", {1.0, 1e9}).same());
+  EXPECT_FALSE(compare(folder / "a/run.h5", folder / "a/run.h5", {1.0, 1e9}).same());
   write_text(folder / "a.csv", "step,a\n0,nan\n");
-  EXPECT_FALSE(compare(folder / "a.csv", folder / "a.csv", 1.0, 1e9).same());
+  EXPECT_FALSE(compare(folder / "a.csv", folder / "a.csv", {1.0, 1e9}).same());
   write_text(folder / "a.json", R"({"a": null, "b": 1})");
-  EXPECT_FALSE(compare(folder / "a.json", folder / "a.json", 1.0, 1e9).same());
+  EXPECT_FALSE(compare(folder / "a.json", folder / "a.json", {1.0, 1e9}).same());
 }
 
 TEST(Compare, TablesDifferInNumberColumnsAndRows) {
@@ -149,11 +165,11 @@ TEST(Compare, TablesDifferInNumberColumnsAndRows) {
   write_text(folder / "c.csv", "step,probe 2 [K]\n0,300\n1,301\n");
   write_text(folder / "d.csv", "step,\"probe, 1 [K]\"\n0,300\n");
   write_text(folder / "e.csv", "step,\"probe, 1 [K]\"\n0,300\n1,hot\n");
-  EXPECT_TRUE(compare(folder / "a.csv", folder / "a.csv", 0.0, 0.0).same());
-  expect_different(compare(folder / "a.csv", folder / "b.csv", 1e-3, 0.0), "line 3, step = 1");
-  expect_different(compare(folder / "a.csv", folder / "c.csv", 1.0, 1.0), "different columns");
-  expect_different(compare(folder / "a.csv", folder / "d.csv", 1.0, 1.0), "has 2 rows");
-  expect_different(compare(folder / "a.csv", folder / "e.csv", 1.0, 1.0), "line 3: 'hot' is no number");
+  EXPECT_TRUE(compare(folder / "a.csv", folder / "a.csv", {0.0, 0.0}).same());
+  expect_different(compare(folder / "a.csv", folder / "b.csv", {1e-3, 0.0}), "line 3, step = 1");
+  expect_different(compare(folder / "a.csv", folder / "c.csv", {1.0, 1.0}), "different columns");
+  expect_different(compare(folder / "a.csv", folder / "d.csv", {1.0, 1.0}), "has 2 rows");
+  expect_different(compare(folder / "a.csv", folder / "e.csv", {1.0, 1.0}), "line 3: 'hot' is no number");
 }
 
 TEST(Compare, JsonDiffersInNumberKeyTypeAndLength) {
@@ -163,12 +179,14 @@ TEST(Compare, JsonDiffersInNumberKeyTypeAndLength) {
     return folder / name;
   };
   const std::string gold = json("a.json", R"({"x": {"y": [1, 2.5]}, "wall_s": 3, "name": "a"})");
-  EXPECT_TRUE(compare(gold, json("b.json", R"({"x": {"y": [1, 2.5]}, "wall_s": 4, "name": "b"})"), 0.0, 0.0).same());
-  expect_different(compare(gold, json("c.json", R"({"x": {"y": [1, 2.6]}})"), 1e-3, 0.0), "x.y[1]");
-  expect_different(compare(gold, json("d.json", R"({"x": {"y": [1]}, "name": ""})"), 1.0, 1.0), "has 2 and 1 entries");
-  expect_different(compare(gold, json("e.json", R"({"x": {}, "name": ""})"), 1.0, 1.0), "x.y is missing on the second");
-  expect_different(compare(gold, json("f.json", R"({"x": {"y": ["1", 2.5]}, "name": ""})"), 1.0, 1.0), "x.y[0] is");
-  expect_different(compare(gold, json("g.json", "{"), 1.0, 1.0), "no readable JSON");
+  EXPECT_TRUE(compare(gold, json("b.json", R"({"x": {"y": [1, 2.5]}, "wall_s": 4, "name": "b"})"), {0.0, 0.0}).same());
+  expect_different(compare(gold, json("c.json", R"({"x": {"y": [1, 2.6]}})"), {1e-3, 0.0}), "x.y[1]");
+  expect_different(compare(gold, json("d.json", R"({"x": {"y": [1]}, "name": ""})"), {1.0, 1.0}),
+                   "has 2 and 1 entries");
+  expect_different(compare(gold, json("e.json", R"({"x": {}, "name": ""})"), {1.0, 1.0}),
+                   "x.y is missing on the second");
+  expect_different(compare(gold, json("f.json", R"({"x": {"y": ["1", 2.5]}, "name": ""})"), {1.0, 1.0}), "x.y[0] is");
+  expect_different(compare(gold, json("g.json", "{"), {1.0, 1.0}), "no readable JSON");
 }
 
 TEST(Compare, FieldsHaveTolerancesOfTheirOwn) {
@@ -224,11 +242,11 @@ TEST(Compare, FilesOfSubfoldersCount) {
     write_text(folder / side + "/top.json", R"({"x": 1})");
     write_text(folder / side + "/inner/deep.json", R"({"x": 1})");
   }
-  EXPECT_EQ(compare(folder / "a", folder / "b", 0.0, 0.0).compared(), 2u);
+  EXPECT_EQ(compare(folder / "a", folder / "b", {0.0, 0.0}).compared(), 2u);
   write_text(folder / "b/inner/deep.json", R"({"x": 2})");
-  expect_different(compare(folder / "a", folder / "b", 0.1, 0.0), "DIFFERS inner/deep.json:x");
+  expect_different(compare(folder / "a", folder / "b", {0.1, 0.0}), "DIFFERS inner/deep.json:x");
   std::filesystem::remove(folder / "b/inner/deep.json");
-  expect_different(compare(folder / "a", folder / "b", 0.1, 0.0), "inner/deep.json is missing in " + (folder / "b"));
+  expect_different(compare(folder / "a", folder / "b", {0.1, 0.0}), "inner/deep.json is missing in " + (folder / "b"));
 }
 
 TEST(Compare, EachFileMustHaveSomethingToCompare) {
@@ -238,13 +256,13 @@ TEST(Compare, EachFileMustHaveSomethingToCompare) {
     write_text(folder / side + "/full.json", R"({"x": 1})");
     write_text(folder / side + "/empty.csv", "step,a\n");
   }
-  expect_different(compare(folder / "a", folder / "b", 0.0, 0.0),
+  expect_different(compare(folder / "a", folder / "b", {0.0, 0.0}),
                    "nothing was compared of " + (folder / "a/empty.csv"));
 }
 
 TEST(Compare, RefusesAToleranceThatIsNone) {
   TestFolder folder;
-  EXPECT_THROW(compare(folder.path(), folder.path(), -1.0, 0.0), std::invalid_argument);
+  EXPECT_THROW(compare(folder.path(), folder.path(), {-1.0, 0.0}), std::invalid_argument);
   EXPECT_THROW(compare(folder.path(), folder.path(), std::nan(""), 0.0), std::invalid_argument);
   EXPECT_THROW(compare(folder.path(), folder.path(), 0.0, HUGE_VAL), std::invalid_argument);
 }
