@@ -221,6 +221,33 @@ class ReproduceTest(unittest.TestCase):
         self.assertNotIn("speedup", summary["experiments"]["1"]["kiln"])
         self.assertIsNotNone(figures.reduced_surface(results, self.folder / "pictures", "kiln"))
 
+    def test_continued_runs_stand_without_times(self):
+        # Its report tells the seconds of its last part only.
+        folder = self.folder / "continued"
+        shutil.copytree(self.study, folder)
+        file = folder / "experiment-1/published-2/lspg-1e-3/lspg/report.json"
+        report = json.loads(file.read_text())
+        report["run"]["first_step"] = 90
+        report["time"]["loop_wall_s"] /= 1000.0
+        report["time"]["loop_cpu_s"] /= 1000.0
+        file.write_text(json.dumps(report))
+        results = Results(folder)
+        frame = tables.accuracy(results)
+        frame = frame[(frame["setting"] == "Case 2") & (frame["method"] == "LSPG")].set_index("tolerance")
+        times = ["wall, s", "CPU, s", "wall saving", "CPU saving"]
+        self.assertEqual(list(frame.loc["1e-3", times]), 4 * [tables.NOT_IN_REPORT])
+        self.assertEqual(frame.loc["1e-3", "state"], "complete, continued: no times")
+        self.assertNotIn(tables.NOT_IN_REPORT, list(frame.loc["1e-2", times]))
+        self.assertGreater(float(frame.loc["1e-3", "probe error, % of K"]), 0.0)
+        for table, column, measure in (("best_wall_time", "SWT", "loop_wall_s"), ("best_cpu_hours", "SCPUH", "loop_cpu_s")):
+            savings = tables.savings(results, self.published, table)
+            row = savings[(savings["setting"] == "Case 2") & (savings["method"] == "LSPG")].iloc[0]
+            full, whole = self.report("full-order", "fom"), self.report("published-2/lspg-1e-2", "lspg")
+            saving = full["time"][measure] / whole["time"][measure]
+            self.assertAlmostEqual(float(str(row[column]).replace(",", "")) / saving, 1, delta=6e-3)
+        cases = page.summary_of(results, self.published)["experiments"]["1"]["published_case_2"]["cases"]
+        self.assertEqual(set(cases["lspg-1e-3"]["speedup"].values()), {None})
+
     def test_missing_cases_are_not_run(self):
         results, _ = self.broken(lambda row: "as-printed" not in row["name"] and "published-2" not in row["name"])
         self.assertEqual(tables.as_printed(results, self.published).iloc[0]["wall, s, as printed"], "not run")
