@@ -22,7 +22,7 @@ namespace {
 
 std::atomic<long long> allocations{0}, bytes{0}, largest{0};
 
-void note(std::size_t size) {
+[[maybe_unused]] void note(std::size_t size) {
   ++allocations;
   bytes += static_cast<long long>(size);
   long long known = largest;

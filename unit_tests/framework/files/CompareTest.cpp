@@ -194,7 +194,7 @@ TEST(Compare, FieldsHaveTolerancesOfTheirOwn) {
   write_text(folder / "a.csv", "step,hot [K],cold [K],rate\n0,1000,300,0\n");
   write_text(folder / "b.csv", "step,hot [K],cold [K],rate\n0,1001,300.003,1e-9\n");
   const auto compared = [&](const std::vector<FieldTolerance>& own) {
-    return compare(folder / "a.csv", folder / "b.csv", 0.0, 0.0, own);
+    return compare(folder / "a.csv", folder / "b.csv", {0.0, 0.0, own});
   };
   EXPECT_TRUE(compared({{"hot [K]", 1.1e-3, 0.0}, {"cold [K]", 1.1e-5, 0.0}, {"rate", 1e-6, 1.0}}).same());
   expect_different(compared({{"hot [K]", 1.1e-3, 0.0}, {"rate", 1e-6, 1.0}}), "DIFFERS cold [K]");
@@ -263,8 +263,8 @@ TEST(Compare, EachFileMustHaveSomethingToCompare) {
 TEST(Compare, RefusesAToleranceThatIsNone) {
   TestFolder folder;
   EXPECT_THROW(compare(folder.path(), folder.path(), {-1.0, 0.0}), std::invalid_argument);
-  EXPECT_THROW(compare(folder.path(), folder.path(), std::nan(""), 0.0), std::invalid_argument);
-  EXPECT_THROW(compare(folder.path(), folder.path(), 0.0, HUGE_VAL), std::invalid_argument);
+  EXPECT_THROW(compare(folder.path(), folder.path(), {std::nan(""), 0.0}), std::invalid_argument);
+  EXPECT_THROW(compare(folder.path(), folder.path(), {0.0, HUGE_VAL}), std::invalid_argument);
 }
 
 }  // namespace
