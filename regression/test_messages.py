@@ -204,6 +204,14 @@ class MessagesTest(KilnTest):
         words = ("model.table.step: '1 degC' counts from a zero of its own", "expected")
         self.wrong("check", SMALL, "--set", "model.table.step=1 degC", lines=1, words=words)
 
+        lacking = ("time.newton.jacobian: ", "VortexModel does not offer")
+        for command in ("check", "train"):
+            self.wrong(command, HERE / "cases/vortex-gnat.yaml", "--set", "time.newton.jacobian=sparse", lines=1, words=lacking)
+        # In several windows a rank is a cap, which may be more than any of them holds.
+        caps = ("windows={steps: 2}", "basis.rank=10", "residual_basis.rank=14", "sampling.samples=10")
+        outcome = self.kiln("check", SMALL, *(word for cap in caps for word in ("--set", f"reduction.{cap}")))
+        self.assertEqual((outcome.status, outcome.stderr), (0, ""))
+
     def test_a_range_that_ends_before_it_begins(self):
         words = ("model.particles.radius: ", "the least, 0.5, is above the largest, 0.2")
         random = HERE / "cases" / "vortex-random.yaml"

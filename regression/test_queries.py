@@ -126,6 +126,16 @@ class QueriesTest(KilnTest):
             warnings = json.loads((folder / "report.json").read_text())["run"]["warnings"]
             self.assertTrue(warnings[0].endswith("; and 1 more point"), warnings)
 
+    def test_a_report_tells_no_count_that_is_of_one_point_only(self):
+        self.single("gnat", 20, 0.5)
+        self.single("fom", 20, 0.5)
+        for method, counted in (("gnat", ("linearisations", "reduced_jacobian_reciprocal_condition")),
+                                ("fom", ("jacobian_evaluations", "linear_iterations", "finite_difference_rates"))):
+            one = json.loads((self.folder / "single" / method / "report.json").read_text())["method"]
+            many = json.loads((self.answers(method) / "report.json").read_text())["method"]
+            self.assertEqual(set(one) - set(many), set(counted))
+        self.assertEqual(set(one["model"]) - set(many["model"]), {"mean_absorbed_watt"})
+
     def test_mistakes_are_told_with_their_places(self):
         for override, words in (
             ("queries.points={heat_source.powr: [1 W]}", ("no live parameter", "did you mean 'heat_source.power'?")),

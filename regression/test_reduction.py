@@ -172,6 +172,10 @@ class ReductionTest(KilnTest):
         self.assertEqual(outcome.status, 2, outcome.stderr)
         self.assertIn("probe 'other' at ", outcome.stderr)
         self.assertIn("this method does not hold the particle nearest to it; expected ", outcome.stderr)
+        # Half way to one that is held, both are nearest.
+        beside = min(positions, key=lambda position: np.linalg.norm(position - everywhere[other]))
+        outcome = self.kiln("run", SMALL, "--set", "method.type=gnat", "--set", probe(*(beside + everywhere[other]) / 2), "--quiet")
+        self.assertEqual(outcome.status, 2, outcome.stderr)
         # On a particle that is held, or less than half a spacing away from one.
         place = positions[len(positions) // 2] + [0, 0, 0.4e-4 if positions[len(positions) // 2][2] < 4e-4 else -0.4e-4]
         self.solve("run", "method.type=gnat", probe(*place))

@@ -2,6 +2,7 @@
 
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "framework/base/LinearAlgebra.hpp"
@@ -32,6 +33,25 @@ void broadcast(const Communicator& communicator, int root, Array& array) {
   Teuchos::broadcast(communicator, root, 1, &count);
   array.resize(static_cast<std::size_t>(count));
   broadcast(communicator, root, array.data(), array.size());
+}
+
+/// Sums an array over all ranks, in place.
+template <class T>
+void sum_over_ranks(const Communicator& communicator, T* values, std::size_t count) {
+  if (communicator.getSize() == 1) return;
+  std::vector<T> sum;
+  in_pieces(count, [&](std::size_t first, int length) {
+    sum.resize(length);
+    Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, length, values + first, sum.data());
+    std::copy_n(sum.data(), length, values + first);
+  });
+}
+
+/// The Euclidean norm of a distributed array from each rank's sum of squares.
+inline double root_of_sum(const Communicator& communicator, double squares) {
+  double total = squares;
+  if (communicator.getSize() > 1) Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, 1, &squares, &total);
+  return std::sqrt(total);
 }
 
 /// The vectors or strings of all ranks, in the order of the ranks, on each rank.

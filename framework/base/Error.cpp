@@ -65,13 +65,6 @@ DivergenceError::DivergenceError(std::string what, double time)
 DivergenceError::DivergenceError(std::string what, double time, Place place)
     : DivergenceError(std::move(what), std::nullopt, time, std::optional<Place>(place)) {}
 
-DivergenceError::DivergenceError(std::string what, int step, double time)
-    : DivergenceError(std::move(what), std::optional<int>(step), time, std::nullopt) {}
-
-DivergenceError::DivergenceError(std::string what, int step, double time, long long particle,
-                                 std::array<double, 3> position)
-    : DivergenceError(std::move(what), std::optional<int>(step), time, Place{particle, position}) {}
-
 DivergenceError DivergenceError::at_step(int step) const {
   return DivergenceError(problem_, step_.value_or(step), time_, place_);
 }

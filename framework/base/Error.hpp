@@ -58,14 +58,10 @@ class DivergenceError : public std::runtime_error {
 
   DivergenceError(std::string what, double time);
   DivergenceError(std::string what, double time, Place place);
-  DivergenceError(std::string what, int step, double time);
-  /// Names the particle with the worst value as well; `position` in metres.
-  DivergenceError(std::string what, int step, double time, long long particle, std::array<double, 3> position);
 
   /// The same error with the step's number in front; a number already there stays.
   DivergenceError at_step(int step) const;
   const std::optional<int>& step() const { return step_; }
-  double time() const { return time_; }
   const std::optional<Place>& place() const { return place_; }
 
  private:

@@ -72,6 +72,7 @@ void Assembly::march(LoopTotals& totals) {
 void Assembly::finish(RunReport& report) {
   for (const auto& observer : observers_) observer->finish(report);
   method_->report(report.section("method"));
+  method_->report_work(report.section("method"));
 }
 
 }  // namespace kiln

@@ -263,7 +263,7 @@ class Commands {
     const char* what = "Compare two run folders or two result files, field by field";
     CLI::App* added = add("compare", what, [this] { return compare_files(); });
     added->add_option("A", left_, "run folder, .h5, .csv or .json")->required()->check(CLI::ExistingPath);
-    added->add_option("B", right_, "the same kind; A's errors are relative to it")
+    added->add_option("B", right_, "the same kind; differences count relative to the larger of two numbers")
         ->required()
         ->check(CLI::ExistingPath);
     added->add_option("--tolerance", compare_settings_.tolerance, "largest relative difference")

@@ -39,7 +39,7 @@ bool is_comparable(const fs::path& file) {
 }
 
 void compare_files(const fs::path& a, const fs::path& b, const std::string& label, NumberComparison& comparison) {
-  const std::size_t compared = comparison.compared(), faults = comparison.faults();
+  const std::size_t compared = comparison.compared(), told = comparison.told();
   try {
     const std::string kind = a.extension().string();
     if (kind != b.extension().string()) {
@@ -56,7 +56,7 @@ void compare_files(const fs::path& a, const fs::path& b, const std::string& labe
   } catch (const FileError& error) {
     comparison.unreadable(error.what());
   }
-  if (comparison.compared() == compared && comparison.faults() == faults) {
+  if (comparison.compared() == compared && comparison.told() == told) {
     comparison.fault(fmt::format("nothing was compared of {} and {}", a.string(), b.string()));
   }
 }

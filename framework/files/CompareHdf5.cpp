@@ -96,6 +96,7 @@ class Hdf5Comparison {
       if (other != row_of.end()) pairs_.emplace_back(i, other->second);
     }
     if (!comparison_.common() || (pairs_.size() == a.size() && pairs_.size() == b.size())) return;
+    if (pairs_.empty()) return comparison_.fault(label_ + "there is no particle that both hold");
     comparison_.one_sided(
         fmt::format("{}{} and {} particles, {} of them common", label_, a.size(), b.size(), pairs_.size()));
   }
@@ -116,6 +117,11 @@ class Hdf5Comparison {
       return compare_frames(a, b, name, path);
     }
     if (shape != other_shape) {
+      const bool is_frames = facts_a_.is_frames(shape) || path == "/time" || path == "/step";
+      // Other frames, so that nothing would be left to compare.
+      if (common_rows && is_frames) {
+        return comparison_.fault(fmt::format("{}{} has {} and {} frames", label_, path, shape[0], other_shape[0]));
+      }
       return comparison_.one_sided(fmt::format("{}{} has shape {} and {}", label_, path, fmt::join(shape, " × "),
                                                fmt::join(other_shape, " × ")));
     }

@@ -27,7 +27,8 @@ class NumberComparison {
     result_.unreadable.push_back(text);
   }
   std::size_t compared() const { return result_.compared(); }
-  std::size_t faults() const { return result_.faults.size(); }
+  /// Faults, and what one side alone holds.
+  std::size_t told() const { return result_.faults.size() + result_.one_sided.size(); }
   /// Faults the tolerances that named no field: they may be misspelt, and then the field they meant had another one.
   void fault_unused_tolerances();
 

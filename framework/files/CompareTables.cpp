@@ -114,11 +114,22 @@ void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b,
     return comparison.fault(
         fmt::format("{} has {} rows, {} has {}", a.string(), left.rows.size(), b.string(), right.rows.size()));
   }
+  for (const std::string& column : right.columns) {
+    if (std::find(left.columns.begin(), left.columns.end(), column) == left.columns.end()) {
+      comparison.one_sided(fmt::format("{}{} is missing in {}", label, column, a.string()));
+    }
+  }
   const RowPlaces places(left);
   for (std::size_t column = 0; column < left.columns.size(); ++column) {
-    const auto same = std::find(right.columns.begin(), right.columns.end(), left.columns[column]);
-    if (same == right.columns.end()) continue;
-    const std::size_t other = same - right.columns.begin();
+    std::size_t other = column;
+    if (left.columns != right.columns) {
+      const auto same = std::find(right.columns.begin(), right.columns.end(), left.columns[column]);
+      if (same == right.columns.end()) {
+        comparison.one_sided(fmt::format("{}{} is missing in {}", label, left.columns[column], b.string()));
+        continue;
+      }
+      other = same - right.columns.begin();
+    }
     comparison.begin(label + left.columns[column]);
     for (std::size_t row = 0; row < left.rows.size(); ++row) {
       comparison.add(left.rows[row][column], right.rows[row][other], [&] { return places.where(row); });

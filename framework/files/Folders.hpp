@@ -5,7 +5,8 @@
 
 namespace kiln {
 
-/// Where the results of a checked input go. All are below `output.directory`.
+// Where the results of a checked input go: all are below `output.directory`.
+
 /// Folder of a run: named by the method, so that full-order and reduced runs of one input stand side by side.
 inline std::filesystem::path run_folder(const Teuchos::ParameterList& input) {
   return std::filesystem::path(input.sublist("output").get<std::string>("directory")) /

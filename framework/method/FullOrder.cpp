@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/base/Loop.hpp"
 #include "framework/base/ViewOf.hpp"
@@ -124,15 +125,9 @@ int FullOrder::rate(ConstVectorView x, double time, VectorView dxdt) {
   return 1;
 }
 
-double FullOrder::sum_over_ranks_root(double local) const {
-  double total = 0.0;
-  Teuchos::reduceAll(*halo_.rows()->getComm(), Teuchos::REDUCE_SUM, 1, &local, &total);
-  return std::sqrt(total);
-}
-
 double FullOrder::norm_at(const StepResidual& residual, ConstVectorView x, VectorView f) {
   rate_at(x, residual.time, f);
-  return sum_over_ranks_root(residual_squares(residual, x, f, residual_));
+  return root_of_sum(*model_->rows()->getComm(), residual_squares(residual, x, f, residual_));
 }
 
 SolveReport FullOrder::solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) {
@@ -163,7 +158,7 @@ SolveReport FullOrder::solve_implicit(const StepResidual& residual, VectorView x
   }
   // r is a difference of terms as large as h; below their round-off no update can bring it.
   const double round_off =
-      4.0 * std::numeric_limits<double>::epsilon() * sum_over_ranks_root(squares(residual.history));
+      4.0 * std::numeric_limits<double>::epsilon() * root_of_sum(*model_->rows()->getComm(), squares(residual.history));
   const double target = std::max(settings_.tolerance * norm, round_off);
   bool descending = true;
   while (norm > target && report.iterations < settings_.iterations && descending) {
@@ -276,6 +271,9 @@ void FullOrder::report(nlohmann::json& section) const {
   section["jacobian"] = to_text(settings_.jacobian);
   section["refresh"] = settings_.refresh;
   section["tolerance"] = settings_.tolerance;
+}
+
+void FullOrder::report_work(nlohmann::json& section) const {
   section["jacobian_evaluations"] = jacobian_evaluations_;
   section["linear_iterations"] = linear_iterations_;
   section["finite_difference_rates"] = jacobian_->rate_evaluations();

@@ -61,6 +61,7 @@ class FullOrder : public Method {
     return resumed_ ? std::vector<std::string>{} : model_->warnings();
   }
   void report(nlohmann::json& section) const override;
+  void report_work(nlohmann::json& section) const override;
 
   const std::shared_ptr<Model>& model() const { return model_; }
   /// Times ∂f/∂u was evaluated, a restart's recomputation included.
@@ -71,7 +72,6 @@ class FullOrder : public Method {
   void rate_at(ConstVectorView x, double time, VectorView f);
   /// Evaluates f(x) and residual_ = r(x); returns the residual's norm.
   double norm_at(const StepResidual& residual, ConstVectorView x, VectorView f);
-  double sum_over_ranks_root(double local) const;
   SolveReport solve_explicit(const StepResidual& residual, VectorView x, VectorView f);
   SolveReport solve_implicit(const StepResidual& residual, VectorView x, VectorView f);
   /// Freezes ∂f/∂u at x, which the sources hold already.

@@ -59,8 +59,8 @@ class Method {
   /// dx/dt, for explicit Runge–Kutta stages. Returns the number of evaluations of f.
   virtual int rate(ConstVectorView x, double time, VectorView dxdt) = 0;
   /// Solves r(x) = 0, exactly or in the method's own sense, from the guess in x. On return x is the solution and
-  /// u, f hold state and rate at this rank's rows there. Throws DivergenceError without step number; the driver adds
-  /// it.
+  /// u, f hold state and rate at this rank's rows there. Throws DivergenceError without step number; the loop over
+  /// the steps adds it.
   virtual SolveReport solve(const StepResidual& residual, VectorView x, VectorView u, VectorView f) = 0;
   /// Throws NotOffered for a form of the Jacobian that an implicit solve() is to use and the model lacks. Schemes with
   /// implicit steps ask when they are made, before a run replaces what an earlier one left. A frozen Jacobian may be
@@ -95,6 +95,8 @@ class Method {
   virtual std::vector<std::string> warnings() const = 0;
   /// The method's own lines of the run report, e.g. basis rank and sampled particles.
   virtual void report(nlohmann::json& section) const = 0;
+  /// More of them, of a single run: what its solves have counted, since it began or was continued.
+  virtual void report_work(nlohmann::json& section) const = 0;
 };
 
 }  // namespace kiln

@@ -14,6 +14,7 @@
 #include "framework/files/Hdf5.hpp"
 #include "framework/model/DegreesOfFreedom.hpp"
 #include "framework/model/ParticleMap.hpp"
+#include "framework/model/SampleRows.hpp"
 
 namespace kiln {
 namespace {
@@ -42,27 +43,10 @@ VectorView writable_column(const MatrixView& matrix) { return Kokkos::subview(ma
 ConstMatrixView as_matrix(const ConstVectorView& vector) { return ConstMatrixView(vector.data(), vector.extent(0), 1); }
 MatrixView as_matrix(const VectorView& vector) { return MatrixView(vector.data(), vector.extent(0), 1); }
 
-std::vector<GlobalIndex> checked(std::vector<GlobalIndex> rows, const Map& full_rows) {
-  std::sort(rows.begin(), rows.end());
-  const auto twice = std::adjacent_find(rows.begin(), rows.end());
-  if (twice != rows.end()) throw std::invalid_argument(fmt::format("sampled row {} is listed twice", *twice));
-  // How many ranks own each row: one, or the row is unknown.
-  std::vector<int> mine(rows.size()), owners(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) mine[i] = full_rows.isNodeGlobalElement(rows[i]) ? 1 : 0;
-  Teuchos::reduceAll(*full_rows.getComm(), Teuchos::REDUCE_SUM, static_cast<int>(rows.size()), mine.data(),
-                     owners.data());
-  const auto unknown = std::find(owners.begin(), owners.end(), 0);
-  if (unknown != owners.end()) {
-    throw std::invalid_argument(fmt::format("sampled row {} is not a row of the model, which has {}",
-                                            rows[unknown - owners.begin()], full_rows.getGlobalNumElements()));
-  }
-  return rows;
-}
-
 }  // namespace
 
 MaskedModel::MaskedModel(std::shared_ptr<const Model> full, const std::vector<GlobalIndex>& rows)
-    : full_(std::move(full)), chosen_(checked(rows, *full_->rows())), components_(full_->fields().size()) {
+    : full_(std::move(full)), chosen_(checked_rows(rows, *full_->rows())), components_(full_->fields().size()) {
   parameters_ = full_->parameters();
   const Map& full_rows = *full_->rows();
   const Map& full_sources = *full_->sources();
@@ -165,7 +149,7 @@ Teuchos::RCP<const CrsMatrix> MaskedModel::rate_jacobian_matrix(ConstVectorView 
 }
 
 std::unique_ptr<Model> MaskedModel::sampled(const std::vector<GlobalIndex>& rows) const {
-  return std::make_unique<MaskedModel>(full_, checked(rows, *rows_));
+  return std::make_unique<MaskedModel>(full_, checked_rows(rows, *rows_));
 }
 
 void MaskedModel::save_sample(hdf5::Group& group) const {

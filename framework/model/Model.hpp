@@ -65,7 +65,8 @@ class Model {
   virtual Teuchos::RCP<const CrsMatrix> rate_jacobian_matrix(ConstVectorView u, double time) const;
 
   /// The same physics on chosen rows only, with just the sources these need. `rows` holds global particle ids and is
-  /// the same on every rank; a rank of the result keeps those of its own rows, in ascending order of ids.
+  /// the same on every rank; a rank of the result keeps those of its own rows, in ascending order of ids. Throws
+  /// InputError for an id that is there twice or that is no row.
   virtual std::unique_ptr<Model> sampled(const std::vector<GlobalIndex>& rows) const;
   /// Writes what a sampled model needs to be rebuilt without the full one, for any number of ranks. Collective.
   virtual void save_sample(hdf5::Group& group) const;

@@ -61,8 +61,8 @@ class HeatModel final : public Model, public PairwiseModel {
   /// `pairs`: directed pairs of neighbours, `neighbours_per_particle`, and `mean_absorbed_watt` over the times of the
   /// run so far.
   std::vector<std::pair<std::string, double>> facts() const override;
-  /// Where a source that heats has heated no particle so far.
   void forget() override;
+  /// Where a source that heats has heated no particle in the run so far.
   std::vector<std::string> warnings() const override;
 
   /// Particles, pairs and weights of this rank.

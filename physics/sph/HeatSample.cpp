@@ -6,6 +6,7 @@
 #include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
+#include "framework/model/SampleRows.hpp"
 #include "physics/sph/DomainParts.hpp"
 #include "physics/sph/HeatModel.hpp"
 
@@ -41,35 +42,14 @@ std::vector<T> reordered(const std::vector<T>& values, const std::vector<std::si
 
 HeatDomain sampled_domain(const HeatDomain& domain, const std::vector<GlobalIndex>& rows) {
   const HostDomain from(domain);
-  std::vector<GlobalIndex> wanted(rows);
-  std::sort(wanted.begin(), wanted.end());
-  const auto twice = std::adjacent_find(wanted.begin(), wanted.end());
-  if (twice != wanted.end()) {
-    throw InputError("", fmt::format("particle {} is sampled twice", *twice), "each particle once");
-  }
   DomainParts parts;
   std::vector<LocalIndex> local_rows;
-  for (const GlobalIndex id : wanted) {
+  for (const GlobalIndex id : checked_rows(rows, *domain.rows)) {
     const LocalIndex local = domain.rows->getLocalElement(id);
     if (local == Teuchos::OrdinalTraits<LocalIndex>::invalid()) continue;
     parts.rows.push_back(id);
     local_rows.push_back(local);
   }
-  const Communicator& communicator = *domain.rows->getComm();
-  std::vector<int> held(wanted.size(), 0);
-  std::vector<int> found(wanted.size(), 0);
-  for (const GlobalIndex id : parts.rows) {
-    held[std::lower_bound(wanted.begin(), wanted.end(), id) - wanted.begin()] = 1;
-  }
-  if (!wanted.empty()) {
-    Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, static_cast<int>(held.size()), held.data(), found.data());
-  }
-  const auto missing = std::find(found.begin(), found.end(), 0);
-  if (missing != found.end()) {
-    throw InputError("", fmt::format("particle {} is no row of the model", wanted[missing - found.begin()]),
-                     fmt::format("ids of the model's {} rows", domain.rows->getGlobalNumElements()));
-  }
-
   std::vector<GlobalIndex> refers;
   for (const LocalIndex row : local_rows) {
     for (std::size_t pair = from.offsets(row); pair < from.offsets(row + 1); ++pair) {

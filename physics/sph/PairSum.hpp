@@ -5,8 +5,9 @@
 #include "physics/sph/Lanes.hpp"
 #include "physics/sph/ThermalState.hpp"
 
-/// The one place where the pair term of Eq. 11 is written. Written for any scalar type, so that automatic
-/// differentiation (Sacado) and complex steps go through the very code that runs, and for Lanes.
+/// The one place where the pair term of Eq. 11 is written; HeatJacobian.cpp has its derivatives. Written for any scalar
+/// type, so that automatic differentiation (Sacado) and complex steps go through the very code that runs, and for
+/// Lanes.
 namespace kiln {
 
 /// What is summed over the neighbours j of a particle i, w = r_ij·∇W_ij / r_ij² in 1/m⁵: a quarter of a term of Eq. 7's

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/files/Together.hpp"
 #include "rom/linear_algebra/Dense.hpp"
@@ -23,7 +24,7 @@ hdf5::Array<double> gather_rows(const std::vector<GlobalIndex>& ids, const Map& 
     if (row < 0 || row >= owned) continue;
     for (std::size_t k = 0; k < columns; ++k) result.values[i * columns + k] = local(row, k);
   }
-  dense::sum_over_ranks(*map.getComm(), result.values.data(), result.values.size());
+  sum_over_ranks(*map.getComm(), result.values.data(), result.values.size());
   return result;
 }
 

@@ -19,7 +19,8 @@ std::vector<GlobalIndex> Questions::particles() const {
 }
 
 bool Questions::tells(const std::array<double, 3>& point, double distance) const {
-  if (distance <= 0.5 * spacing) return true;
+  // Half way between two particles both are nearest.
+  if (distance < (0.5 - same_place) * spacing) return true;
   return std::any_of(positions.begin(), positions.end(), [&](const std::array<double, 3>& asked) {
     return std::hypot(point[0] - asked[0], point[1] - asked[1], point[2] - asked[2]) <= same_place * spacing;
   });

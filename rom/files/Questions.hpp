@@ -12,7 +12,7 @@ namespace kiln {
 struct Questions {
   std::vector<std::array<double, 3>> positions;  ///< m
   std::vector<GlobalIndex> nearest;              ///< the particle nearest to each
-  double spacing = 0.0;                          ///< m: no sampled particle has another one nearer than this
+  double spacing = 0.0;  ///< m: no particle that is held has another one, held or not, nearer than this
 
   /// The particles of `nearest`, ascending and once each.
   std::vector<GlobalIndex> particles() const;

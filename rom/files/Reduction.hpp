@@ -32,7 +32,7 @@ struct Reduction {
   const Model& model;
   VectorView reference;  ///< u_ref at the rows
   std::vector<WindowReduction> windows;
-  Questions questions;  ///< without their spacing, which follows from the sample meshes
+  Questions questions;  ///< without their spacing, which follows from the particles that are held
   /// Ids, ascending: where a component was highest or lowest at any step of the training.
   std::vector<GlobalIndex> extremes;
   ParameterPoints points;  ///< all live parameters, where it was learnt and is to be tried

@@ -1,3 +1,4 @@
+#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <cmath>
@@ -57,20 +58,21 @@ void write_sample_mesh(hdf5::Group group, const WindowReduction& window, const s
   window.sample->save_sample(model);
 }
 
-/// The least distance of a sampled particle to a source of its window, itself apart, in m; 0 where all stand alone.
-double spacing_of(const std::vector<WindowReduction>& windows, const ParticleTable& held) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const WindowReduction& window : windows) {
-    const std::vector<GlobalIndex> sources = all_ids(*window.sample->sources());
-    for (const GlobalIndex row : window.sampled) {
-      const double* from = held.positions.data() + 3 * held.find(row);
-      for (const GlobalIndex source : sources) {
-        const double* to = held.positions.data() + 3 * held.find(source);
-        if (source != row) least = std::min(least, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
-      }
+/// The least distance of a particle of the table to any other one of the model, in m; 0 where it stands alone.
+double spacing_of(const ParticleTable& held, const Model& model) {
+  const Map& rows = *model.rows();
+  const auto positions = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), model.positions());
+  double mine = std::numeric_limits<double>::infinity(), least = mine;
+  for (std::size_t k = 0; k < held.ids.size(); ++k) {
+    const double* from = held.positions.data() + 3 * k;
+    const LocalIndex itself = rows.getLocalElement(held.ids[k]);
+    for (LocalIndex i = 0; i < local_size(rows); ++i) {
+      const double x = positions(i, 0) - from[0], y = positions(i, 1) - from[1], z = positions(i, 2) - from[2];
+      if (i != itself) mine = std::min(mine, x * x + y * y + z * z);
     }
   }
-  return std::isfinite(least) ? least : 0.0;
+  Teuchos::reduceAll(*rows.getComm(), Teuchos::REDUCE_MIN, 1, &mine, &least);
+  return std::isfinite(least) ? std::sqrt(least) : 0.0;
 }
 
 void write_contents(const std::string& file, const Reduction& reduction) {
@@ -117,7 +119,7 @@ void write_contents(const std::string& file, const Reduction& reduction) {
     table_of(targets).write(group);
   }
   Questions questions = reduction.questions;
-  questions.spacing = spacing_of(reduction.windows, table);
+  questions.spacing = spacing_of(table, reduction.model);
   questions.write(particles);
   write_points(root, reduction.points);
   root.flush();

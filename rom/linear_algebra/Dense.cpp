@@ -4,7 +4,6 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 
-#include "framework/base/Collectives.hpp"
 #include "framework/base/Lanes.hpp"
 
 namespace kiln::dense {
@@ -198,16 +197,6 @@ MatrixView gram(const ConstMatrixView& a) {
     for (int i = 0; i < j; ++i) result(j, i) = result(i, j);
   }
   return result;
-}
-
-void sum_over_ranks(const Communicator& communicator, double* values, std::size_t count) {
-  if (communicator.getSize() == 1) return;
-  std::vector<double> sum;
-  in_pieces(count, [&](std::size_t first, int length) {
-    sum.resize(length);
-    Teuchos::reduceAll(communicator, Teuchos::REDUCE_SUM, length, values + first, sum.data());
-    std::copy_n(sum.data(), length, values + first);
-  });
 }
 
 MatrixView row_block(const MatrixView& a, std::size_t first, std::size_t count) {

@@ -28,9 +28,6 @@ void product(Transpose transpose_a, Transpose transpose_b, double alpha, const C
 /// AᵀA, both triangles filled, of this rank's rows.
 MatrixView gram(const ConstMatrixView& a);
 
-/// Sums a contiguous array over all ranks, in place.
-void sum_over_ranks(const Communicator& communicator, double* values, std::size_t count);
-
 /// The block of rows first … first + count − 1.
 MatrixView row_block(const MatrixView& a, std::size_t first, std::size_t count);
 ConstMatrixView row_block(const ConstMatrixView& a, std::size_t first, std::size_t count);

@@ -39,7 +39,7 @@ void scale_column(const MatrixView& a, std::size_t column, double factor) {
 Small small_half_of_gram(const MatrixView& snapshots, const Communicator& communicator) {
   Small small;
   small.to_modes = dense::gram(snapshots);
-  dense::sum_over_ranks(communicator, small.to_modes.data(), small.to_modes.size());
+  sum_over_ranks(communicator, small.to_modes.data(), small.to_modes.size());
   const std::size_t count = snapshots.extent(1);
   small.singular_values.resize(count);
   if (communicator.getRank() == 0) {
@@ -96,7 +96,7 @@ Tsqr range_of(const MatrixView& snapshots, int rank, const Communicator& communi
     if (k == power_iterations) return Tsqr(range, communicator);
     orthonormalise(range, communicator);
     dense::product(Transpose::yes, Transpose::no, 1.0, snapshots, range, 0.0, combinations);
-    dense::sum_over_ranks(communicator, combinations.data(), combinations.size());
+    sum_over_ranks(communicator, combinations.data(), combinations.size());
   }
 }
 
@@ -107,7 +107,7 @@ Small small_half_of_projection(const Tsqr& range, const MatrixView& snapshots, c
   for (std::size_t k = 0; k < width; ++k) identity(k, k) = 1.0;
   const MatrixView projected("kiln::rom::projected snapshots", width, snapshots.extent(1));
   dense::product(Transpose::yes, Transpose::no, 1.0, range.apply(identity), snapshots, 0.0, projected);
-  dense::sum_over_ranks(communicator, projected.data(), projected.size());
+  sum_over_ranks(communicator, projected.data(), projected.size());
   Small small{std::vector<double>(width), MatrixView("kiln::rom::left singular vectors", width, width)};
   if (communicator.getRank() == 0) small = left_half(projected);
   return small;
@@ -121,13 +121,13 @@ double squared_norm(const MatrixView& snapshots, const Communicator& communicato
     const double* entries = &snapshots(0, column);
     total += sum("kiln::rom::squared norm", rows, [entries](LocalIndex i) { return entries[i] * entries[i]; });
   }
-  dense::sum_over_ranks(communicator, &total, 1);
+  sum_over_ranks(communicator, &total, 1);
   return total;
 }
 
 double loss_of_orthogonality(const MatrixView& modes, const Communicator& communicator) {
   const MatrixView products = dense::gram(modes);
-  dense::sum_over_ranks(communicator, products.data(), products.size());
+  sum_over_ranks(communicator, products.data(), products.size());
   double loss = 0.0;
   for (std::size_t j = 0; j < products.extent(1); ++j) {
     for (std::size_t i = 0; i < products.extent(0); ++i) {

@@ -10,9 +10,9 @@ struct Pod {
   MatrixView modes;                     ///< Φ: this rank's rows × rank, orthonormal over all ranks
   std::vector<double> singular_values;  ///< descending; all of S, or what a randomised one has seen of them
   Truncation truncation;
-  std::size_t snapshots;  ///< that it is of
-  double orthogonality;   ///< largest entry of |ΦᵀΦ − I|
-  bool reorthogonalised;  ///< whether Φ had lost more orthogonality than 1e-10 and was orthonormalised again
+  std::size_t snapshots = 0;      ///< that it is of
+  double orthogonality = 0.0;     ///< largest entry of |ΦᵀΦ − I|
+  bool reorthogonalised = false;  ///< whether Φ had lost more orthogonality than 1e-10 and was orthonormalised again
 };
 
 /// Collective over the ranks that hold the snapshots' rows. `tsqr` overwrites the snapshots; `gram` and `randomised`

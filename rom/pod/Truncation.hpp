@@ -37,9 +37,10 @@ struct PodSettings {
 
 /// Where a POD is cut off.
 struct Truncation {
-  int rank;         ///< columns kept
-  int independent;  ///< singular values above PodSettings::resolution()
-  double energy;  ///< fraction kept, of the independent ones' Σσ² or Σσ; randomised: of the Σσ² of all that are held
+  int rank = 0;         ///< columns kept
+  int independent = 0;  ///< singular values above PodSettings::resolution()
+  double energy =
+      0.0;  ///< fraction kept, of the independent ones' Σσ² or Σσ; randomised: of the Σσ² of all that are held
 };
 
 /// Smallest rank that keeps the energy asked for (at least `at_least`), or the rank asked for. `singular_values`, of so

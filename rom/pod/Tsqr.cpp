@@ -18,7 +18,8 @@ Tsqr::Tsqr(MatrixView a, const Communicator& communicator) : local_(a), rows_(a.
   std::size_t top = 0, own_top = 0;
   for (int rank = 0; rank < communicator.getSize(); ++rank) {
     const std::vector<double>& r = factors[rank];
-    for (std::size_t j = 0; j < columns; ++j) std::copy_n(&r[j * height(r)], height(r), &stack(top, j));
+    for (std::size_t j = 0; j < columns; ++j)
+      std::copy_n(r.data() + j * height(r), height(r), stack.data() + j * total + top);
     if (rank == communicator.getRank()) own_top = top;
     top += height(r);
   }

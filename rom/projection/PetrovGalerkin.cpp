@@ -104,13 +104,7 @@ void PetrovGalerkin::restore(const hdf5::Group& group) {
 
 void PetrovGalerkin::report(nlohmann::json& section) const {
   int largest = 0;
-  long long linearisations = 0;
-  double condition = 1.0;
-  for (const OwnedWindow& window : windows_) {
-    largest = std::max(largest, window.projection->trial().size());
-    linearisations += window.projection->linearisations();
-    condition = std::min(condition, window.projection->reciprocal_condition());
-  }
+  for (const OwnedWindow& window : windows_) largest = std::max(largest, window.projection->trial().size());
   if (!reduction_.empty()) section["reduction_seal"] = reduction_;
   section["time_windows"] = windows_.size();
   section["basis_rank"] = largest;
@@ -118,6 +112,15 @@ void PetrovGalerkin::report(nlohmann::json& section) const {
   section["rows"] = static_cast<long long>(projection().model().rows()->getGlobalNumElements());
   section["jacobian"] = to_text(settings_.jacobian);
   section["refresh"] = settings_.refresh;
+}
+
+void PetrovGalerkin::report_work(nlohmann::json& section) const {
+  long long linearisations = 0;
+  double condition = 1.0;
+  for (const OwnedWindow& window : windows_) {
+    linearisations += window.projection->linearisations();
+    condition = std::min(condition, window.projection->reciprocal_condition());
+  }
   section["linearisations"] = linearisations;
   section["reduced_jacobian_reciprocal_condition"] = condition;
 }

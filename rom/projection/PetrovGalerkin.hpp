@@ -68,6 +68,7 @@ class PetrovGalerkin : public Method, public AdvancesTogether {
   void restore(const hdf5::Group& group) override;
   std::vector<std::string> warnings() const override;
   void report(nlohmann::json& section) const override;
+  void report_work(nlohmann::json& section) const override;
 
   /// With linear multistep schemes.
   std::unique_ptr<PointBlock> point_block(Request request) override;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/base/Loop.hpp"
 #include "framework/method/Divergence.hpp"
@@ -79,15 +80,15 @@ void Projection::initial(VectorView x) const {
     difference(i) -= reference(i);
     if (difference(i) != 0.0) differs = 1.0;
   }
-  dense::sum_over_ranks(*communicator_, &differs, 1);
+  sum_over_ranks(*communicator_, &differs, 1);
   if (differs == 0.0) return;
 
   const ConstMatrixView tangent = dense::row_block(trial_->tangent(x), 0, row_size_);
   MatrixView normal = dense::gram(tangent);
-  dense::sum_over_ranks(*communicator_, normal.data(), normal.size());
+  sum_over_ranks(*communicator_, normal.data(), normal.size());
   const VectorView own = Kokkos::subview(x, std::make_pair(first_, first_ + size_));
   dense::multiply_transposed(1.0, tangent, Kokkos::subview(difference, std::make_pair(0, row_size_)), 0.0, own);
-  dense::sum_over_ranks(*communicator_, own.data(), own.size());
+  sum_over_ranks(*communicator_, own.data(), own.size());
   dense::LuFactors factors;
   if (!(factors.factor(normal) > 1e-14)) {
     throw DivergenceError("the initial state cannot be told in the trial space: its rows are dependent", 0.0);
@@ -108,19 +109,12 @@ bool Projection::linearised_for(double alpha, double gamma) const {
 void Projection::factor(double time) {
   test_ = test_basis_->form(tangent_rows_, jacobian_tangent_, *communicator_);
   dense::product(dense::Transpose::yes, dense::Transpose::no, 1.0, test_, jacobian_tangent_, 0.0, small_);
-  dense::sum_over_ranks(*communicator_, small_.data(), small_.size());
+  sum_over_ranks(*communicator_, small_.data(), small_.size());
   reciprocal_condition_ = factors_.factor(small_);
   require_regular(reciprocal_condition_, time);
   double squares = 0.0;
   for (std::size_t k = 0; k < test_.extent(1); ++k) squares += squares_of(&test_(0, k), test_.extent(0));
-  test_norm_ = root_over_ranks(squares);
-}
-
-double Projection::root_over_ranks(double squares) const {
-  if (communicator_->getSize() == 1) return std::sqrt(squares);
-  double total = 0.0;
-  Teuchos::reduceAll(*communicator_, Teuchos::REDUCE_SUM, 1, &squares, &total);
-  return std::sqrt(total);
+  test_norm_ = root_of_sum(*communicator_, squares);
 }
 
 double Projection::goal(double tolerance, double first_norm, double test_norm, double history_norm) {
@@ -214,8 +208,9 @@ SolveReport Projection::solve(const StepResidual& residual, VectorView x, Vector
   if (!std::isfinite(norm)) throw_diverged(not_finite, residual.time, f, residual_);
   report.residuals = 1;
   report.first_norm = norm;
-  const double goal = this->goal(settings_.tolerance, norm, test_norm_,
-                                 root_over_ranks(squares_of(residual.history.data(), residual.history.extent(0))));
+  const double goal =
+      this->goal(settings_.tolerance, norm, test_norm_,
+                 root_of_sum(*communicator_, squares_of(residual.history.data(), residual.history.extent(0))));
   bool descending = true;
   while (norm > goal && report.iterations < settings_.iterations && descending) {
     if (when_factored_ == Factors::every_iteration) factor(residual.time);

@@ -96,7 +96,6 @@ class Projection {
   /// finite.
   double reduced_residual(const StepResidual& residual, ConstVectorView x, VectorView f);
   void project(const VectorView& rows, const VectorView& g);
-  double root_over_ranks(double squares) const;
   /// û ← û + scale · step_.
   void move(VectorView x, double scale) const;
   /// The step of an explicit scheme in an affine trial space, linear in û: one update, one evaluation of f.

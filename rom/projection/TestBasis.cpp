@@ -1,5 +1,6 @@
 #include "rom/projection/TestBasis.hpp"
 
+#include "framework/base/Collectives.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 
 namespace kiln {
@@ -22,7 +23,7 @@ ConstMatrixView GnatTestBasis::form(ConstMatrixView, ConstMatrixView jacobian_ta
   }
   using dense::Transpose;
   dense::product(Transpose::no, Transpose::no, 1.0, gappy_operator_, jacobian_tangent, 0.0, reduced_);
-  dense::sum_over_ranks(communicator, reduced_.data(), reduced_.size());
+  sum_over_ranks(communicator, reduced_.data(), reduced_.size());
   dense::product(Transpose::no, Transpose::no, 1.0, gappy_operator_transposed_, reduced_, 0.0, test_);
   return test_;
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 #include "rom/sampling/GrowingLeastSquares.hpp"
@@ -61,7 +62,7 @@ class Candidates {
         for (std::size_t k = 0; k < columns; ++k) values[c * columns + k] = modes_(local * components_ + c, k);
       }
     }
-    dense::sum_over_ranks(*rows_.getComm(), values.data(), values.size());
+    sum_over_ranks(*rows_.getComm(), values.data(), values.size());
     double size = 0.0;
     for (const double value : values) size += value * value;
     for (std::size_t i = 0; i < standing_.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/model/Model.hpp"
 #include "rom/clustering/Points.hpp"
 #include "rom/linear_algebra/Dense.hpp"
@@ -197,7 +198,7 @@ void fit_weights(const PairwiseModel& pairwise, Model& sample, const ParticleTab
   const Communicator& communicator = *sample.rows()->getComm();
   std::vector<double> sizes(clusters.rows.size(), 0.0), factors(clusters.row_weights.size(), 0.0);
   for (const RowRates& of : rows) sizes[of.row] = size_of(of.brought);
-  dense::sum_over_ranks(communicator, sizes.data(), sizes.size());
+  sum_over_ranks(communicator, sizes.data(), sizes.size());
   const double largest = *std::max_element(sizes.begin(), sizes.end());
   for (RowRates& of : rows) {
     double* own = factors.data() + clusters.row_offsets[of.row];
@@ -214,7 +215,7 @@ void fit_weights(const PairwiseModel& pairwise, Model& sample, const ParticleTab
     const VectorView d = coefficients(of.brought, of.missed, fit.ridge * sizes[of.row]);
     for (std::size_t c = 0; c < d.extent(0); ++c) own[c] += d(c);
   }
-  dense::sum_over_ranks(communicator, factors.data(), factors.size());
+  sum_over_ranks(communicator, factors.data(), factors.size());
   for (std::size_t pair = 0; pair < factors.size(); ++pair) clusters.row_weights[pair] *= factors[pair];
   if (fit.most > 0) drop_unweighted(clusters);
 }

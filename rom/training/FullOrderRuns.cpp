@@ -76,6 +76,13 @@ FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos:
       reference_("kiln::rom::initial state", local_size(*model()->sources()) * model()->fields().size()),
       snapshots_(method_.row_size()) {
   collect_points(block);
+  // It asks for the form of the Jacobian that it is to use.
+  static_cast<void>(scheme());
+}
+
+std::unique_ptr<TimeScheme> FullOrderRuns::scheme() {
+  return Registry<TimeScheme>::create(input_.sublist("time").sublist("scheme"),
+                                      TimeScheme::Context{method_, settings_.span.step});
 }
 
 void FullOrderRuns::run() {
@@ -113,8 +120,7 @@ void FullOrderRuns::run_at(std::size_t point) {
 
   VectorView x("kiln::rom::unknown", method_.row_size());
   method_.initial(x);
-  const std::unique_ptr<TimeScheme> scheme = Registry<TimeScheme>::create(
-      input_.sublist("time").sublist("scheme"), TimeScheme::Context{method_, settings_.span.step});
+  const std::unique_ptr<TimeScheme> scheme = this->scheme();
   scheme->start(x, 0.0);
   totals_.push_back(run_time_loop(method_, *scheme, x, settings_.span, listeners));
   const std::vector<GlobalIndex> found = extremes.ids();

@@ -29,7 +29,8 @@ class FullOrderRuns {
   /// Adds the keys `train_on` and `try_on` to the block `reduction`.
   static void specify(Specification& reduction);
 
-  /// Makes the model. Throws InputError for points that are none of the model's. Collective.
+  /// Makes the model. Throws InputError for points that are none of the model's, and for a form of the Jacobian that it
+  /// lacks. Collective.
   FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos::ParameterList& block, const Settings& settings,
                 const Teuchos::RCP<const Communicator>& communicator);
   /// Runs them all; what is told below of runs stands after it. Collective.
@@ -64,6 +65,7 @@ class FullOrderRuns {
  private:
   void collect_points(const Teuchos::ParameterList& block);
   void run_at(std::size_t point);
+  std::unique_ptr<TimeScheme> scheme();
 
   const Teuchos::ParameterList& input_;
   Settings settings_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/model/MaskedModel.hpp"
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/registry/Registry.hpp"
@@ -34,7 +35,7 @@ MatrixView sampled_rows(const Map& rows, const MatrixView& modes, const std::vec
       }
     }
   }
-  dense::sum_over_ranks(*rows.getComm(), result.data(), result.size());
+  sum_over_ranks(*rows.getComm(), result.data(), result.size());
   return result;
 }
 

@@ -290,7 +290,7 @@ std::unique_ptr<FullOrderRuns> ProcedureTwo::full_order_runs() const {
   const Model& model = *runs->model();
   Registry<Sampling>::create(block_.sublist("sampling"), NoContext{})
       ->check(static_cast<GlobalIndex>(model.rows()->getGlobalNumElements()), static_cast<int>(model.fields().size()),
-              residual_settings_.rank.value_or(basis_settings_.rank.value_or(0)));
+              residual_settings_.rank_is_cap ? 0 : residual_settings_.rank.value_or(basis_settings_.rank.value_or(0)));
   if (clusters()) check_clustering(block_.sublist("clustering"), model);
   return runs;
 }

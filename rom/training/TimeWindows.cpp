@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/Collectives.hpp"
+
 namespace kiln {
 
 Specification WindowSettings::specification() {
@@ -37,7 +39,7 @@ WindowSettings WindowSettings::of(const Teuchos::ParameterList* list) {
 
 WindowCosts::WindowCosts(const Snapshots& snapshots, const Communicator& communicator)
     : products_(dense::gram(snapshots.matrix())) {
-  dense::sum_over_ranks(communicator, products_.data(), products_.size());
+  sum_over_ranks(communicator, products_.data(), products_.size());
   for (int n = 1; n <= this->snapshots(); ++n) largest_ = std::max(largest_, std::sqrt(product(n, n)));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/registry/Registry.hpp"
 #include "framework/time/TimeScheme.hpp"
@@ -51,7 +52,7 @@ double field_error(const TrialReference& reference, const UnknownRecord& record,
       sums[1] += exact(i, k) * exact(i, k);
     }
   }
-  dense::sum_over_ranks(communicator, sums, 2);
+  sum_over_ranks(communicator, sums, 2);
   return sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
 }
 
@@ -82,7 +83,7 @@ void QueryRecord::observe(const Moment& moment) {
 
 std::vector<double> QueryRecord::values() const {
   std::vector<double> all = values_;
-  dense::sum_over_ranks(*communicator_, all.data(), all.size());
+  sum_over_ranks(*communicator_, all.data(), all.size());
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "Chain.hpp"
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "rom/linear_algebra/Dense.hpp"
 #include "rom/pod/Pod.hpp"
@@ -69,7 +70,7 @@ PodSettings settings(const std::string& algorithm, int rank) {
 MatrixView products(const MatrixView& a, const MatrixView& b, const Communicator& communicator) {
   MatrixView c("products", a.extent(1), b.extent(1));
   dense::product(Transpose::yes, Transpose::no, 1.0, a, b, 0.0, c);
-  dense::sum_over_ranks(communicator, c.data(), c.size());
+  sum_over_ranks(communicator, c.data(), c.size());
   return c;
 }
 
@@ -195,7 +196,7 @@ TEST(Pod, RandomisedTruncatesADecayingSpectrum) {
     for (std::size_t i = 0; i < result.modes.extent(0); ++i) {
       cosine_of_angle += result.modes(i, k) * cosine(begin + static_cast<int>(i), k + 1, 300);
     }
-    dense::sum_over_ranks(*world(), &cosine_of_angle, 1);
+    sum_over_ranks(*world(), &cosine_of_angle, 1);
     EXPECT_NEAR(std::abs(cosine_of_angle), 1.0, 1e-9) << k;
   }
 }
@@ -218,7 +219,7 @@ TEST(Snapshots, WithALimitGiveThePodOfAll) {
     EXPECT_NEAR(merged.singular_values[k], exact.singular_values[k], 1e-13 * 50.0);
     double cosine_of_angle = 0.0;
     for (std::size_t i = 0; i < exact.modes.extent(0); ++i) cosine_of_angle += exact.modes(i, k) * merged.modes(i, k);
-    dense::sum_over_ranks(*world(), &cosine_of_angle, 1);
+    sum_over_ranks(*world(), &cosine_of_angle, 1);
     EXPECT_NEAR(std::abs(cosine_of_angle), 1.0, 1e-8) << k;
   }
 }

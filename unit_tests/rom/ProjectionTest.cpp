@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "Projections.hpp"
+#include "framework/base/Collectives.hpp"
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/model/MaskedModel.hpp"
@@ -226,7 +227,7 @@ double residual_norm_after_step(PetrovGalerkin& method, const Case& values) {
   for (int k = 0; k < 20; ++k) method.solve({1.0, values.step, values.step, history}, x, u, f);
   double sum = 0.0;
   for (std::size_t i = 0; i < u.extent(0); ++i) sum += std::pow(u(i) - values.step * f(i) + history(i), 2);
-  dense::sum_over_ranks(*world(), &sum, 1);
+  sum_over_ranks(*world(), &sum, 1);
   return std::sqrt(sum);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/base/Collectives.hpp"
 #include "framework/method/Trainer.hpp"
 #include "framework/time/TimeLoop.hpp"
 #include "rom/projection/FullSize.hpp"
@@ -56,7 +57,7 @@ std::function<std::unique_ptr<TestBasis>()> gnat_test(const Model& model, const 
   const Map& rows = *model.rows();
   std::vector<double> marks(values.count, 0.0);
   for (LocalIndex i = 0; i < local_size(rows); ++i) marks[rows.getGlobalElement(i)] = 1.0;
-  dense::sum_over_ranks(*rows.getComm(), marks.data(), marks.size());
+  sum_over_ranks(*rows.getComm(), marks.data(), marks.size());
   std::vector<GlobalIndex> sampled;
   for (int id = 0; id < values.count; ++id) {
     if (marks[id] > 0.0) sampled.push_back(id);
@@ -89,7 +90,7 @@ std::vector<double> gathered_state(const Method& method, ConstVectorView x) {
       all[map.getGlobalElement(i) * components + c] = u(i * components + c);
     }
   }
-  dense::sum_over_ranks(*map.getComm(), all.data(), all.size());
+  sum_over_ranks(*map.getComm(), all.data(), all.size());
   return all;
 }
 

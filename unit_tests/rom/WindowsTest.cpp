@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "Projections.hpp"
+#include "framework/base/Collectives.hpp"
 #include "framework/files/Hdf5.hpp"
 #include "framework/time/TimeLoop.hpp"
 #include "rom/basis/AffineBasis.hpp"
@@ -347,7 +348,7 @@ TEST(WindowCosts, AreThoseOfAPodOfTheIncrements) {
     states.append(state);
     double square = 0.0;
     for (int i = 0; i < rows; ++i) square += state(i) * state(i);
-    dense::sum_over_ranks(*world(), &square, 1);
+    sum_over_ranks(*world(), &square, 1);
     largest = std::max(largest, std::sqrt(square));
   }
   const WindowCosts costs(states, *world());

@@ -142,6 +142,15 @@ TEST(Compare, OfDifferentParticlesOnlyTheCommonOnes) {
   write_run(folder / "c", 3, 0.0, "pressure", {4, 3, 1});
   const CompareResult other = compare(folder / "a/run.h5", folder / "c/run.h5", {0.0, 0.0, {}, true});
   EXPECT_NE(other.text().find("ALONE /temperature is missing in"), std::string::npos) << other.text();
+  // What leaves nothing to compare is no agreement.
+  const auto common_with = [&](const std::string& name) {
+    return compare(folder / "a/run.h5", folder / (name + "/run.h5"), {1.0, 1e9, {}, true});
+  };
+  write_run(folder / "d", 3, 0.0, "temperature", {7, 8});
+  expect_different(common_with("d"), "FAULT there is no particle that both hold");
+  std::filesystem::create_directories(folder / "e");
+  RunFile(folder / "e", Map(5, 0, world()), PositionView("e", 5), {{{"temperature", "K"}}, {0, 1}, {}}, 0, world());
+  expect_different(common_with("e"), "FAULT /time has 3 and 2 frames");
 }
 
 TEST(Compare, NanNeverAgrees) {
@@ -170,6 +179,25 @@ TEST(Compare, TablesDifferInNumberColumnsAndRows) {
   expect_different(compare(folder / "a.csv", folder / "c.csv", {1.0, 1.0}), "different columns");
   expect_different(compare(folder / "a.csv", folder / "d.csv", {1.0, 1.0}), "has 2 rows");
   expect_different(compare(folder / "a.csv", folder / "e.csv", {1.0, 1.0}), "line 3: 'hot' is no number");
+}
+
+TEST(Compare, OfTablesOnlyTheCommonColumns) {
+  TestFolder folder;
+  write_text(folder / "a.csv", "step,left [K],right [K]\n0,300,310\n1,301,311\n");
+  write_text(folder / "b.csv", "step,right [K],deep [K]\n0,310,1\n1,311.5,2\n");
+  const auto found = [&](double tolerance) {
+    return compare(folder / "a.csv", folder / "b.csv", {tolerance, 0.0, {}, true});
+  };
+  expect_different(found(1e-3), "DIFFERS right [K]");
+  const CompareResult result = found(1e-2);
+  EXPECT_TRUE(result.same()) << result.text();
+  EXPECT_EQ(result.compared(), 4u);
+  for (const char* alone : {"ALONE left [K] is missing in", "ALONE deep [K] is missing in"}) {
+    EXPECT_NE(result.text().find(alone), std::string::npos) << result.text();
+  }
+  write_text(folder / "c.csv", "x,x\n1,1\n");
+  write_text(folder / "d.csv", "x,x\n1,2\n");
+  expect_different(compare(folder / "c.csv", folder / "d.csv", {1e-3, 0.0}), "DIFFERS x");
 }
 
 TEST(Compare, JsonDiffersInNumberKeyTypeAndLength) {

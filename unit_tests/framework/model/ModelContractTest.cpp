@@ -133,12 +133,12 @@ TEST(MaskedModel, TakesThePlaceOfASampleThatIsNotOffered) {
   EXPECT_NE(dynamic_cast<MaskedModel*>(masked.get()), nullptr);
   EXPECT_FALSE(watched.expired()) << "the masked model keeps the full one";
   contract::check_sampled(*masked, {7});
-  EXPECT_THROW(masked->sampled({5}), std::invalid_argument);
+  EXPECT_THROW(masked->sampled({5}), InputError);
 }
 
 TEST(MaskedModel, RefusesRowsThatAreNone) {
-  EXPECT_THROW(MaskedModel(chain(), {3, 23}), std::invalid_argument);
-  EXPECT_THROW(MaskedModel(chain(), {3, 4, 3}), std::invalid_argument);
+  EXPECT_THROW(MaskedModel(chain(), {3, 23}), InputError);
+  EXPECT_THROW(MaskedModel(chain(), {3, 4, 3}), InputError);
 }
 
 TEST(MaskedModel, SavesTheIdsOfItsRows) {

@@ -67,6 +67,7 @@ class StandInMethod : public Method {
     };
   }
   void report(nlohmann::json&) const override {}
+  void report_work(nlohmann::json&) const override {}
 
   Teuchos::RCP<const Map> coordinates() const override { return degree_of_freedom_map(map_, 2); }
   bool begin_step(double) override { throw NotOffered("StandInMethod", "begin_step"); }
