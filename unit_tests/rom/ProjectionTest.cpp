@@ -132,6 +132,7 @@ TEST_P(Projection, KeepsItsJacobianForTheStepsAskedFor) {
   march(*method, values);
   nlohmann::json section;
   method->report(section);
+  method->report_work(section);
   EXPECT_EQ(section["linearisations"], 3);
   EXPECT_EQ(section["basis_rank"], 8);
 }

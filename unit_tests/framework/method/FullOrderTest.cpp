@@ -245,6 +245,7 @@ TEST(FullOrder, IsMadeFromTheInput) {
   run(*method, "backward euler", 0.1, 5);
   nlohmann::json report;
   method->report(report);
+  method->report_work(report);
   EXPECT_EQ(report["particles"], 12);
   EXPECT_EQ(report["jacobian"], "matrix free");
   EXPECT_EQ(report["jacobian_evaluations"], 2);
