@@ -2,12 +2,13 @@
 
 import json
 import shutil
+import subprocess
 
 import h5py
 import numpy as np
 import pandas
 
-from harness import HERE, SMALL, KilnTest, datasets, main
+from harness import HERE, SMALL, KilnTest, command, datasets, main
 
 # Largest error of a probe's temperature against the full-order run, relative to the largest rise of any probe. The
 # basis of 12 vectors was learnt from the same run, so its truncation (last singular value kept / largest: 2e-5) and
@@ -122,6 +123,21 @@ class ReductionTest(KilnTest):
         rise = np.abs(full - full[0]).max()
         self.assertLess(np.abs(reduced - full).max() / rise, OTHER_POWER_BOUND)
         self.assertGreater(np.abs(trained - full).max() / rise, 2.0 * OTHER_POWER_BOUND, "the bound tells powers apart")
+
+    def test_a_data_file_that_changes_during_the_training(self):
+        shutil.copytree(HERE / "cases", self.folder / "changing")
+        cloud = self.folder / "changing/cloud.csv"
+        words = command("train", self.folder / "changing/gnat-cloud.yaml", "--set", "output.directory=changing/results")
+        with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as training:
+            text = ""
+            for line in training.stderr:
+                text += line
+                if "training, stage 2: " in line:
+                    lines = cloud.read_text().splitlines()
+                    cloud.write_text("\n".join([*lines[:-2], lines[-1], lines[-2]]) + "\n")
+        self.assertEqual(training.returncode, 2, text)
+        self.assertIn("was learnt from another file than model.particles.path: ", text)
+        self.assertEqual(list((self.folder / "changing").rglob("reduction.h5")), [])
 
     def test_a_report_states_the_errors_of_the_training(self):
         training = json.loads((self.folder / "results/training/report.json").read_text())["training"]

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,7 +36,8 @@ struct Reduction {
   Questions questions;  ///< without their spacing, which follows from the particles that are held
   /// Ids, ascending: where a component was highest or lowest at any step of the training.
   std::vector<GlobalIndex> extremes;
-  ParameterPoints points;  ///< all live parameters, where it was learnt and is to be tried
+  ParameterPoints points;                          ///< all live parameters, where it was learnt and is to be tried
+  std::map<std::string, std::string> data_hashes;  ///< reduction_identity::data_hashes() when the model was made
 };
 
 /// Writes a reduction file. It holds everything an online run needs:

@@ -62,7 +62,14 @@ std::string scheme_text(const Teuchos::ParameterList& time) { return to_yaml(tim
 
 }  // namespace
 
-void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Parameters& parameters) {
+std::map<std::string, std::string> data_hashes(const Teuchos::ParameterList& model, const Communicator& communicator) {
+  std::map<std::string, std::string> hashes;
+  for (const DataFile& named : data_files(model)) hashes[named.path] = data_hash(named.file, communicator);
+  return hashes;
+}
+
+void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Parameters& parameters,
+           const std::map<std::string, std::string>& data_hashes) {
   root.attribute("format", format);
   root.attribute("format_version", version);
   const Teuchos::ParameterList& model = input.sublist("model");
@@ -71,9 +78,7 @@ void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Paramet
   root.attribute("model_input", text);
   root.attribute("model_hash", hash_of(text));
   hdf5::Group data = root.create_group(data_group);
-  for (const DataFile& named : data_files(model)) {
-    data.attribute(named.path, data_hash(named.file, root.communicator()));
-  }
+  for (const auto& [path, hash] : data_hashes) data.attribute(path, hash);
   hdf5::Group live = root.create_group("parameters");
   for (const Parameter& parameter : parameters.list()) live.attribute(parameter.name, *parameter.value);
   const Teuchos::ParameterList& time = input.sublist("time");
@@ -102,10 +107,11 @@ void require_model(const hdf5::Group& root, const Teuchos::ParameterList& model)
   for (const std::string& name : root.group("parameters").attribute_names()) except.push_back("model." + name);
   const hdf5::Group data = root.group(data_group);
   std::vector<std::string> changed;
+  const std::map<std::string, std::string> hashes = data_hashes(model, root.communicator());
   for (const DataFile& named : data_files(model)) {
     if (!data.has_attribute(named.path)) continue;
     except.push_back(named.path);
-    if (data.text(named.path) != data_hash(named.file, root.communicator())) {
+    if (data.text(named.path) != hashes.at(named.path)) {
       changed.push_back(fmt::format("{}: {}", named.path, named.file));
     }
   }

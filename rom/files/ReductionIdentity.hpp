@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <map>
 #include <string>
 
 #include "framework/files/Hdf5.hpp"
@@ -14,9 +15,13 @@ namespace reduction_identity {
 constexpr const char* format = "kiln reduction";
 constexpr long long version = 4;
 
-/// Writes format, version, the model's checked block with its hash, hashes of the data files it names, its live
-/// parameters, time step and scheme.
-void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Parameters& parameters);
+/// Hashes of the data files that the block `model` names, as they are now, by the paths of their entries. Collective.
+std::map<std::string, std::string> data_hashes(const Teuchos::ParameterList& model, const Communicator& communicator);
+
+/// Writes format, version, the model's checked block with its hash, the hashes of its data files, its live parameters,
+/// time step and scheme.
+void write(hdf5::Group& root, const Teuchos::ParameterList& input, const Parameters& parameters,
+           const std::map<std::string, std::string>& data_hashes);
 
 /// Throws FileError for a file that is no reduction, or one of another format version.
 void require_format(const hdf5::Group& root);

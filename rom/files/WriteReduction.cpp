@@ -81,7 +81,7 @@ void write_contents(const std::string& file, const Reduction& reduction) {
   const int components = static_cast<int>(reduction.model.fields().size());
   const MatrixView reference(reduction.reference.data(), reduction.reference.extent(0), 1);
   hdf5::File root = hdf5::File::create(file, communicator);
-  reduction_identity::write(root, reduction.input, reduction.model.parameters());
+  reduction_identity::write(root, reduction.input, reduction.model.parameters(), reduction.data_hashes);
   root.attribute("provenance", json_text(provenance(*communicator)));
   root.attribute("components", static_cast<long long>(components));
   root.attribute("particles", static_cast<long long>(rows.getGlobalNumElements()));

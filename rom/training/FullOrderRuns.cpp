@@ -10,6 +10,7 @@
 #include "framework/observers/ProgressObserver.hpp"
 #include "framework/queries/QueryPoints.hpp"
 #include "framework/registry/Registry.hpp"
+#include "rom/files/ReductionIdentity.hpp"
 #include "rom/training/ExtremeRecord.hpp"
 #include "rom/training/Queries.hpp"
 #include "rom/training/SnapshotRecord.hpp"
@@ -73,6 +74,7 @@ FullOrderRuns::FullOrderRuns(const Teuchos::ParameterList& input, const Teuchos:
       settings_(settings),
       communicator_(communicator),
       method_(block, Method::Context{input, communicator}),
+      data_hashes_(reduction_identity::data_hashes(input.sublist("model"), *communicator)),
       reference_("kiln::rom::initial state", local_size(*model()->sources()) * model()->fields().size()),
       snapshots_(method_.row_size()) {
   collect_points(block);

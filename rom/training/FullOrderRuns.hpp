@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -37,6 +38,8 @@ class FullOrderRuns {
   void run();
 
   const std::shared_ptr<Model>& model() const { return method_.model(); }
+  /// reduction_identity::data_hashes() when the model was made.
+  const std::map<std::string, std::string>& data_hashes() const { return data_hashes_; }
   /// u_0 at the model's sources.
   const VectorView& reference() const { return reference_; }
   /// How many of the points the reduction learns from, at least one; they come first.
@@ -71,6 +74,7 @@ class FullOrderRuns {
   Settings settings_;
   Teuchos::RCP<const Communicator> communicator_;
   FullOrder method_;
+  std::map<std::string, std::string> data_hashes_;
   ParameterPoints points_;           ///< all live parameters at each point
   ParameterPoints own_;              ///< the same of the input
   std::vector<std::string> varied_;  ///< names of the parameters that points list

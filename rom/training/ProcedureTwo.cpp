@@ -230,7 +230,7 @@ ProcedureTwo::Trials ProcedureTwo::attempt(const std::string& path, double error
   stage("reduction file", report, [&] {
     const VectorView rows = Kokkos::subview(full_order_->reference(), std::make_pair(0, lspg->row_size()));
     write_reduction(path, {input_, *full_order_->model(), rows, std::move(windows), full_order_->questions(),
-                           full_order_->extremes(), full_order_->parameters()});
+                           full_order_->extremes(), full_order_->parameters(), full_order_->data_hashes()});
   });
   Trials trials;
   stage("trial run", report, [&] {
