@@ -121,8 +121,8 @@ class QueriesTest(KilnTest):
 
     def test_a_point_that_heats_nothing_is_told_whichever_rank_ran_it(self):
         for ranks in (1, 2):
-            folder = self.answers("fom", "queries.points={heat_source.power: [20 W, 0 W, 0 W, 20 W]}", ranks=ranks,
-                                  warnings=["point 1: the heat source has heated no particle"])
+            folder = self.answers("fom", "queries.points={heat_source.power: [20 W, 20 W, 0 W, 0 W]}", ranks=ranks,
+                                  warnings=["point 2: the heat source has heated no particle"])
             warnings = json.loads((folder / "report.json").read_text())["run"]["warnings"]
             self.assertTrue(warnings[0].endswith("; and 1 more point"), warnings)
 
