@@ -139,6 +139,8 @@ TEST(Compare, OfDifferentParticlesOnlyTheCommonOnes) {
   EXPECT_NE(result.text().find("ALONE 5 and 3 particles, 3 of them common"), std::string::npos) << result.text();
   // Temperatures, times, steps and coordinates.
   EXPECT_EQ(result.compared(), 9u + 3u + 3u + 9u);
+  const CompareResult reversed = compare(folder / "b/run.h5", folder / "a/run.h5", {1.001e-3, 0.0, {}, true});
+  EXPECT_TRUE(reversed.same()) << reversed.text();
   write_run(folder / "c", 3, 0.0, "pressure", {4, 3, 1});
   const CompareResult other = compare(folder / "a/run.h5", folder / "c/run.h5", {0.0, 0.0, {}, true});
   EXPECT_NE(other.text().find("ALONE /temperature is missing in"), std::string::npos) << other.text();
