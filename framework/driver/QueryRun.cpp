@@ -209,8 +209,6 @@ void QueryRun::report(RunReport& report) const {
                                {"diverged", divergences.size()},
                                {"divergences", divergences}};
   report.section("solve") = totals().facts();
-  // What a model sums up is of one run.
-  method_->forget();
   method_->report(report.section("method"));
 }
 

@@ -34,15 +34,17 @@ struct CompareResult {
 /// What is to be compared, and how closely.
 struct CompareSettings {
   double tolerance = 1e-10, floor = 0.0;
-  std::vector<FieldTolerance> own =
-      {};               ///< fields with a tolerance and floor of their own; the first that matches counts
-  bool common = false;  ///< only what both sides hold, and of run files the particles that both hold
+  /// Fields with a tolerance and floor of their own; the first that matches counts.
+  std::vector<FieldTolerance> own = {};
+  /// Only what both sides hold, and of run files the particles that both hold, by their ids. What one side alone holds
+  /// is told; other frames or rows, and no particle in common, still fail.
+  bool common = false;
 };
 
 /// Compares two run folders, or two files of the same kind (.h5, .csv, .json), number by number. Two numbers agree when
-/// |a − b| ≤ tolerance · max(|a|, |b|, floor). Fails on a side, a file or a field that is missing, on other shapes (if
-/// not `common`), on a NaN on either side, on an own tolerance that matches no field, and when nothing was compared, in
-/// all or in one of the files. In a run file, a frame that neither side has written is passed over. In JSON only
+/// |a − b| ≤ tolerance · max(|a|, |b|, floor). Fails on a side, a file or a field that is missing and on other shapes,
+/// if not `common`, on a NaN on either side, on an own tolerance that matches no field, and when nothing was compared,
+/// in all or in one of the files. In a run file, a frame that neither side has written is passed over. In JSON only
 /// numbers count, without the keys `provenance`, `timing` and `speedup` and those that tell seconds of work or memory;
 /// in a folder all files of the three kinds count, those of subfolders too. Not collective: one rank reads both. Throws
 /// std::invalid_argument for a tolerance or floor that is negative or not finite.

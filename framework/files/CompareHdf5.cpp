@@ -61,10 +61,26 @@ class Hdf5Comparison {
  public:
   Hdf5Comparison(const hdf5::Group& a, const hdf5::Group& b, std::string label, NumberComparison& comparison)
       : facts_a_(a), facts_b_(b), label_(std::move(label)), comparison_(comparison) {
-    if (is_run()) pair_particles();
+    if (!is_run()) return;
+    if (comparison.common()) {
+      pair_particles();
+    } else {
+      pair_rows();
+    }
   }
 
-  void compare_groups(const hdf5::Group& a, const hdf5::Group& b, int depth = 0) {
+  void compare(const hdf5::Group& a, const hdf5::Group& b) {
+    compare_groups(a, b, 0);
+    // Times and positions alone say nothing of two runs.
+    if (is_run() && comparison_.common() && !found_field_) {
+      comparison_.fault(label_ + "there is no field that both hold");
+    }
+  }
+
+ private:
+  bool is_run() const { return facts_a_.is_run() && facts_b_.is_run(); }
+
+  void compare_groups(const hdf5::Group& a, const hdf5::Group& b, int depth) {
     // Hard links may lead round in a circle.
     if (depth > deepest) return comparison_.fault(fmt::format("{}{} is nested too deeply", label_, a.path()));
     std::set<std::string> names;
@@ -82,21 +98,21 @@ class Hdf5Comparison {
     }
   }
 
- private:
-  bool is_run() const { return facts_a_.is_run() && facts_b_.is_run(); }
+  void pair_rows() {
+    const std::size_t rows = std::min(facts_a_.particles().size(), facts_b_.particles().size());
+    for (std::size_t i = 0; i < rows; ++i) pairs_.emplace_back(i, i);
+  }
 
-  /// Row by row, or by their ids where only what is common counts.
   void pair_particles() {
     const std::vector<long long>&a = facts_a_.particles(), &b = facts_b_.particles();
     std::map<long long, std::size_t> row_of;
-    for (std::size_t j = 0; j < b.size(); ++j)
-      row_of.emplace(comparison_.common() ? b[j] : static_cast<long long>(j), j);
+    for (std::size_t j = 0; j < b.size(); ++j) row_of.emplace(b[j], j);
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const auto other = row_of.find(comparison_.common() ? a[i] : static_cast<long long>(i));
+      const auto other = row_of.find(a[i]);
       if (other != row_of.end()) pairs_.emplace_back(i, other->second);
     }
-    if (!comparison_.common() || (pairs_.size() == a.size() && pairs_.size() == b.size())) return;
     if (pairs_.empty()) return comparison_.fault(label_ + "there is no particle that both hold");
+    if (pairs_.size() == a.size() && pairs_.size() == b.size()) return;
     comparison_.one_sided(
         fmt::format("{}{} and {} particles, {} of them common", label_, a.size(), b.size(), pairs_.size()));
   }
@@ -112,14 +128,14 @@ class Hdf5Comparison {
     const bool common_rows = is_run() && comparison_.common();
     if (common_rows && path == "/particle") return;
     if (common_rows && path == "/position") return compare_positions(path);
-    if (reals && is_run() && facts_a_.is_frames(shape) && facts_b_.is_frames(other_shape) &&
-        (shape == other_shape || (common_rows && facts_a_.frames() == facts_b_.frames()))) {
+    const bool is_field = reals && is_run() && facts_a_.is_frames(shape) && facts_b_.is_frames(other_shape);
+    found_field_ = found_field_ || is_field;
+    if (is_field && (shape == other_shape || (common_rows && facts_a_.frames() == facts_b_.frames()))) {
       return compare_frames(a, b, name, path);
     }
     if (shape != other_shape) {
-      const bool is_frames = facts_a_.is_frames(shape) || path == "/time" || path == "/step";
-      // Other frames, so that nothing would be left to compare.
-      if (common_rows && is_frames) {
+      // Nothing would be left to compare.
+      if (common_rows && (is_field || path == "/time" || path == "/step")) {
         return comparison_.fault(fmt::format("{}{} has {} and {} frames", label_, path, shape[0], other_shape[0]));
       }
       return comparison_.one_sided(fmt::format("{}{} has shape {} and {}", label_, path, fmt::join(shape, " × "),
@@ -167,6 +183,7 @@ class Hdf5Comparison {
 
   RunFacts facts_a_, facts_b_;
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;  ///< rows of the same particle
+  bool found_field_ = false;                                ///< that both hold
   std::string label_;
   NumberComparison& comparison_;
 };
@@ -177,7 +194,7 @@ void compare_hdf5(const std::filesystem::path& a, const std::filesystem::path& b
                   NumberComparison& comparison) {
   const Teuchos::RCP<const Communicator> alone = Teuchos::rcp(new Teuchos::SerialComm<int>());
   const auto left = hdf5::File::read(a.string(), alone), right = hdf5::File::read(b.string(), alone);
-  Hdf5Comparison(left, right, label, comparison).compare_groups(left, right);
+  Hdf5Comparison(left, right, label, comparison).compare(left, right);
 }
 
 }  // namespace kiln

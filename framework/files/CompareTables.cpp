@@ -83,11 +83,14 @@ class JsonComparison {
 class RowPlaces {
  public:
   explicit RowPlaces(const CsvTable& table) : table_(table) {
-    static const std::set<std::string> names = {"step", "time [s]", "particle", "x [m]", "y [m]", "z [m]"};
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
-      if (names.count(table.columns[column]) > 0) columns_.push_back(column);
+      if (is_place(table.columns[column])) columns_.push_back(column);
     }
     if (columns_.empty()) columns_.push_back(0);
+  }
+  static bool is_place(const std::string& column) {
+    static const std::set<std::string> names = {"step", "time [s]", "particle", "x [m]", "y [m]", "z [m]"};
+    return names.count(column) > 0;
   }
   std::string where(std::size_t row) const {
     std::string text = fmt::format("line {}", row + 2);
@@ -120,6 +123,7 @@ void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b,
     }
   }
   const RowPlaces places(left);
+  bool found_answer = false;
   for (std::size_t column = 0; column < left.columns.size(); ++column) {
     std::size_t other = column;
     if (left.columns != right.columns) {
@@ -130,10 +134,14 @@ void compare_csv(const std::filesystem::path& a, const std::filesystem::path& b,
       }
       other = same - right.columns.begin();
     }
+    found_answer = found_answer || !RowPlaces::is_place(left.columns[column]);
     comparison.begin(label + left.columns[column]);
     for (std::size_t row = 0; row < left.rows.size(); ++row) {
       comparison.add(left.rows[row][column], right.rows[row][other], [&] { return places.where(row); });
     }
+  }
+  if (comparison.common() && !found_answer) {
+    comparison.fault(label + "there is no column that both hold beside those that tell the rows");
   }
 }
 

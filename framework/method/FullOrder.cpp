@@ -18,6 +18,7 @@
 #include "framework/files/Hdf5.hpp"
 #include "framework/files/Unknown.hpp"
 #include "framework/method/Divergence.hpp"
+#include "framework/model/SumsOverRun.hpp"
 #include "framework/registry/Registry.hpp"
 
 namespace kiln {
@@ -93,6 +94,16 @@ void FullOrder::initial(VectorView x) const {
   const VectorView sources("kiln::method::initial state", halo_.source_size());
   model_->initial_state(sources);
   Kokkos::deep_copy(x, Kokkos::subview(sources, std::make_pair(LocalIndex(0), halo_.row_size())));
+}
+
+void FullOrder::forget() {
+  age_ = -1;
+  if (auto* sums = dynamic_cast<SumsOverRun*>(model_.get())) sums->begin_run();
+}
+
+std::vector<std::string> FullOrder::warnings() const {
+  const auto* sums = dynamic_cast<const SumsOverRun*>(model_.get());
+  return sums == nullptr || resumed_ ? std::vector<std::string>{} : sums->warnings();
 }
 
 void FullOrder::require_jacobian() {
@@ -277,6 +288,9 @@ void FullOrder::report_work(nlohmann::json& section) const {
   section["jacobian_evaluations"] = jacobian_evaluations_;
   section["linear_iterations"] = linear_iterations_;
   section["finite_difference_rates"] = jacobian_->rate_evaluations();
+  if (const auto* sums = dynamic_cast<const SumsOverRun*>(model_.get())) {
+    for (const auto& [name, value] : sums->run_facts()) section["model"][name] = value;
+  }
 }
 
 KILN_REGISTER(Method, FullOrder, "fom", "the full-order model: every particle's state is an unknown");

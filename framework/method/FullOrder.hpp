@@ -32,10 +32,7 @@ class FullOrder : public Method {
   Teuchos::RCP<const Map> coordinates() const override { return halo_.rows(); }
   LocalIndex row_size() const override { return halo_.row_size(); }
   void initial(VectorView x) const override;
-  void forget() override {
-    age_ = -1;
-    model_->forget();
-  }
+  void forget() override;
   bool begin_step(double) override { return false; }
 
   void evaluate(ConstVectorView x, double time, VectorView u, VectorView f) override;
@@ -57,9 +54,7 @@ class FullOrder : public Method {
   void save(hdf5::Group& group) const override;
   void restore(const hdf5::Group& group) override;
   /// The model's; none of a run that was continued, of which it has seen the last part only.
-  std::vector<std::string> warnings() const override {
-    return resumed_ ? std::vector<std::string>{} : model_->warnings();
-  }
+  std::vector<std::string> warnings() const override;
   void report(nlohmann::json& section) const override;
   void report_work(nlohmann::json& section) const override;
 

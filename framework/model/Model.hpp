@@ -75,17 +75,9 @@ class Model {
   /// Unless a model has something faster, the points are evaluated one after the other.
   virtual std::unique_ptr<PointRates> at_points(const ParameterPoints& points);
 
-  /// Begins another run: what facts() and warnings() sum up begins anew. A model that sums up nothing has nothing to
-  /// do.
-  virtual void forget() {}
-
   /// What the run report should say of the model, e.g. {"pairs", 7871920}, over all ranks. A model that has nothing to
   /// add to what its method reports anyway keeps the empty list. Collective.
   virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
-
-  /// What of the rates asked for in this run a user is to know before believing the run, a sentence each, e.g. that a
-  /// heat source has heated nothing. A model without doubts keeps the empty list. The same on every rank. Collective.
-  virtual std::vector<std::string> warnings() const { return {}; }
 
   Parameters& parameters() { return parameters_; }
   const Parameters& parameters() const { return parameters_; }

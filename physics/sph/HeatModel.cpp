@@ -200,10 +200,16 @@ std::optional<double> HeatModel::mean_absorbed() const {
   return times == 0 ? std::nullopt : std::optional<double>(total / static_cast<double>(times));
 }
 
-void HeatModel::forget() {
+void HeatModel::begin_run() {
   absorbed_time_ = std::numeric_limits<double>::quiet_NaN();
   absorbed_sum_ = 0.0;
   absorbed_times_ = 0;
+}
+
+std::vector<std::pair<std::string, double>> HeatModel::run_facts() const {
+  const std::optional<double> watt = mean_absorbed();
+  return watt ? std::vector<std::pair<std::string, double>>{{"mean_absorbed_watt", *watt}}
+              : std::vector<std::pair<std::string, double>>{};
 }
 
 std::vector<std::string> HeatModel::warnings() const {
@@ -236,10 +242,8 @@ std::vector<std::pair<std::string, double>> HeatModel::facts() const {
   const double mine = static_cast<double>(domain_.pairs.neighbours.extent(0));
   double pairs = 0.0;
   Teuchos::reduceAll(*domain_.rows->getComm(), Teuchos::REDUCE_SUM, 1, &mine, &pairs);
-  std::vector<std::pair<std::string, double>> facts{
-      {"pairs", pairs}, {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
-  if (const auto watt = mean_absorbed()) facts.emplace_back("mean_absorbed_watt", *watt);
-  return facts;
+  return {{"pairs", pairs},
+          {"neighbours_per_particle", pairs / static_cast<double>(domain_.rows->getGlobalNumElements())}};
 }
 
 }  // namespace kiln

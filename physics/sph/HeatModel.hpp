@@ -9,6 +9,7 @@
 #include "framework/model/LastState.hpp"
 #include "framework/model/Model.hpp"
 #include "framework/model/PairwiseModel.hpp"
+#include "framework/model/SumsOverRun.hpp"
 #include "framework/registry/Specification.hpp"
 #include "physics/sph/HeatDomain.hpp"
 #include "physics/sph/HeatSource.hpp"
@@ -25,7 +26,7 @@ namespace kiln {
 /// taken at particle i. Pair terms are antisymmetric: Σ m_i c_i f_i = Σ q_i A_i to round-off.
 ///
 /// Evaluations write to work arrays the model keeps: one evaluation at a time.
-class HeatModel final : public Model, public PairwiseModel {
+class HeatModel final : public Model, public PairwiseModel, public SumsOverRun {
  public:
   static Specification specification();
   HeatModel(const Teuchos::ParameterList& list, const Context& context);
@@ -58,11 +59,13 @@ class HeatModel final : public Model, public PairwiseModel {
   /// eight points.
   std::unique_ptr<PointRates> at_points(const ParameterPoints& points) override;
 
-  /// `pairs`: directed pairs of neighbours, `neighbours_per_particle`, and `mean_absorbed_watt` over the times of the
-  /// run so far.
+  /// `pairs`: directed pairs of neighbours, and `neighbours_per_particle`.
   std::vector<std::pair<std::string, double>> facts() const override;
-  void forget() override;
-  /// Where a source that heats has heated no particle in the run so far.
+
+  void begin_run() override;
+  /// `mean_absorbed_watt` over the times of the run; none of a source that does not heat.
+  std::vector<std::pair<std::string, double>> run_facts() const override;
+  /// Where a source that heats has heated no particle.
   std::vector<std::string> warnings() const override;
 
   /// Particles, pairs and weights of this rank.

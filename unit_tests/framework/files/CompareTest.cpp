@@ -144,6 +144,7 @@ TEST(Compare, OfDifferentParticlesOnlyTheCommonOnes) {
   write_run(folder / "c", 3, 0.0, "pressure", {4, 3, 1});
   const CompareResult other = compare(folder / "a/run.h5", folder / "c/run.h5", {0.0, 0.0, {}, true});
   EXPECT_NE(other.text().find("ALONE /temperature is missing in"), std::string::npos) << other.text();
+  expect_different(other, "FAULT there is no field that both hold");
   // What leaves nothing to compare is no agreement.
   const auto common_with = [&](const std::string& name) {
     return compare(folder / "a/run.h5", folder / (name + "/run.h5"), {1.0, 1e9, {}, true});
@@ -197,6 +198,9 @@ TEST(Compare, OfTablesOnlyTheCommonColumns) {
   for (const char* alone : {"ALONE left [K] is missing in", "ALONE deep [K] is missing in"}) {
     EXPECT_NE(result.text().find(alone), std::string::npos) << result.text();
   }
+  write_text(folder / "e.csv", "step,deep [K]\n0,1\n1,2\n");
+  expect_different(compare(folder / "a.csv", folder / "e.csv", {1.0, 1.0, {}, true}),
+                   "FAULT there is no column that both");
   write_text(folder / "c.csv", "x,x\n1,1\n");
   write_text(folder / "d.csv", "x,x\n1,2\n");
   expect_different(compare(folder / "c.csv", folder / "d.csv", {1e-3, 0.0}), "DIFFERS x");
