@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_TimeMonitor.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>

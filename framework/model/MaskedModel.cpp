@@ -1,14 +1,9 @@
 #include "framework/model/MaskedModel.hpp"
 
-#include <fmt/format.h>
-
 #include <Teuchos_Array.hpp>
-#include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_OrdinalTraits.hpp>
 #include <Tpetra_CrsMatrix.hpp>
 #include <Tpetra_Map.hpp>
-#include <algorithm>
-#include <stdexcept>
 
 #include "framework/base/Error.hpp"
 #include "framework/files/Hdf5.hpp"

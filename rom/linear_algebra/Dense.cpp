@@ -1,7 +1,6 @@
 #include "rom/linear_algebra/Dense.hpp"
 
 #include <Teuchos_BLAS.hpp>
-#include <Teuchos_CommHelpers.hpp>
 #include <algorithm>
 
 #include "framework/base/Lanes.hpp"

@@ -45,7 +45,7 @@ class PointProjection {
                std::vector<Point>& points);
   /// Fills g_ = Ψᵀr and norms_ of the points that iterate, from state_ and the rate times γ.
   void reduce_residual(const StepResidual& residual, double gamma, ConstMatrixView history, ConstMatrixView f);
-  /// The Euclidean norms of the arrays' columns for the points that iterate.
+  /// The Euclidean norm of each iterating point's row of an array, points × entries.
   void take_norms(ConstMatrixView arrays, std::vector<double>& norms) const;
   /// Fills goals_ from norms_, those of the step's first residual.
   void set_goals(ConstMatrixView history);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Teuchos_CommHelpers.hpp>
 #include <Tpetra_Map.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
